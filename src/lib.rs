@@ -4,3 +4,9 @@
 
 pub mod job;
 pub mod space;
+
+pub mod scene;
+
+pub mod skeleton;
+
+pub mod light;
