@@ -42,10 +42,10 @@ pub struct Cancelled;
 /// Hears of the stages of a run. All methods may be called from any thread; none may panic.
 pub trait Progress: Sync {
     /// A stage begins: its name ("voxels", "collapse"), and how many units of work it has, 0 where that is not known.
-    fn begin(&self, stage: &'static str, total: u64);
+    fn begin(&self, stage: &str, total: u64);
     /// So many more units of the current stage are done.
     fn advance(&self, units: u64);
-    /// The current stage has ended.
+    /// The innermost stage that began has ended; stages nest.
     fn end(&self);
 }
 
@@ -54,7 +54,7 @@ pub trait Progress: Sync {
 pub struct Quiet;
 
 impl Progress for Quiet {
-    fn begin(&self, _stage: &'static str, _total: u64) {}
+    fn begin(&self, _stage: &str, _total: u64) {}
     fn advance(&self, _units: u64) {}
     fn end(&self) {}
 }
