@@ -1,0 +1,92 @@
+//! What can be typed.
+
+use crate::scene::Method;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Finds the veins through which light flows in a 3D scene, and how much light they bring to every sensor.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 120)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Voxels, skeleton, and an estimate at the sensors, the reference beside it
+    Analyse {
+        #[command(flatten)]
+        common: Common,
+        /// The estimator
+        #[arg(long, value_parser = method())]
+        method: Option<Method>,
+    },
+    /// Several methods at the sensors, with their errors against the reference
+    Compare {
+        #[command(flatten)]
+        common: Common,
+        /// The methods, in the order of the columns
+        #[arg(long, value_delimiter = ',', value_parser = method(), default_values_t = [Method::Backward, Method::Forward])]
+        methods: Vec<Method>,
+        /// Without a reference in the scene: trace one with this many samples a sensor; also the samples of `trace`
+        #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
+        spp: Option<u32>,
+    },
+    /// Path-traced truth at the sensors with standard errors, as a reference file on stdout or in -o
+    Trace {
+        #[command(flatten)]
+        common: Common,
+        /// Samples a sensor
+        #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..))]
+        spp: u32,
+        /// Most reflections of a path; without it Russian roulette alone ends paths
+        #[arg(long)]
+        bounces: Option<u32>,
+    },
+}
+
+/// What every command takes.
+#[derive(Debug, clap::Args)]
+pub struct Common {
+    /// A scene file (.toml), or a mesh (.obj .gltf .glb .ply .stl)
+    pub scene: PathBuf,
+    /// Edge of a voxel in metres; by default the scene file's, or one that is chosen
+    #[arg(long, value_name = "METRES")]
+    pub voxel: Option<f32>,
+    /// Factor within which the estimate is to be right
+    #[arg(long, value_name = "FACTOR")]
+    pub tolerance: Option<f64>,
+    /// Threads to work on; by default one a core. The figures do not depend on it
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Seed of all random numbers
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// One JSON object on stdout instead of tables
+    #[arg(long)]
+    pub json: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+/// A method by its name.
+fn method() -> impl TypedValueParser<Value = Method> {
+    PossibleValuesParser::new(Method::ALL.map(Method::name))
+        .try_map(|name| Method::from_name(&name).ok_or("not a method"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Args::command().debug_assert();
+    }
+}

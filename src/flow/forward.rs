@@ -1,0 +1,59 @@
+//! How much of a light's flux gets through the passages on its way: the poster's estimate by carried flux.
+//!
+//! Breadth-first from the light's node along its shortest-path tree: the flux at a node is its parent's times
+//! `min(1, (r / r_parent)^2)`, `r` the radius of the maximal ball; divided by the square of the distance along the skeleton
+//! it gives the irradiance, `B = L0 factor / (pi d^2)`, arriving from the parent. (Chaussard, Biri, Couprie.) The distance is
+//! probe to node + path + node to light. A narrow place takes its share for good: nothing comes back by reflection.
+
+use super::paths::PathTree;
+use super::{Arrival, AtProbe, Lit, add_lights, inverse_square};
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Field, Settings};
+use crate::model::{Model, Probe};
+use crate::skeleton::Skeleton;
+
+/// Irradiance at the probes by the forward heuristic, summed over all lights. Casts no rays.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn estimate(
+    model: &Model,
+    probes: &[Probe],
+    _settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Field, Cancelled> {
+    add_lights(model, probes, "forward", progress, cancel, from_light)
+}
+
+/// What one light gives.
+fn from_light<'a>(lit: &'a Lit<'a>) -> AtProbe<'a> {
+    let share = shares(&lit.model.skeleton, lit.tree);
+    Box::new(move |probe, node| {
+        let to_node_m = (lit.model.node_m(node) - probe.position_m).as_dvec3();
+        let distance_m = to_node_m.length() + lit.tree.distance_m[node.index()] + lit.light.to_node_m;
+
+        // At the light's own node there is no parent: the light itself stands for it.
+        let parent = lit.tree.parent[node.index()];
+        let parent_m = if parent == node { lit.light.position_m } else { lit.model.node_m(parent) };
+        Arrival {
+            irradiance_w_m2: share[node.index()] * inverse_square(lit.light.flux_w, distance_m, lit.model.nearest_m()),
+            towards: (parent_m - probe.position_m).as_dvec3().normalize_or_zero(),
+        }
+    })
+}
+
+/// The share of the light's flux that is carried to each node, by node; 0 where no path leads.
+fn shares(skeleton: &Skeleton, tree: &PathTree) -> Vec<f64> {
+    let mut share = vec![0.0; tree.parent.len()];
+    for &node in &tree.order {
+        let parent = tree.parent[node.index()];
+        share[node.index()] = if parent == node {
+            1.0
+        } else {
+            let [radius_m, parent_radius_m] = [node, parent].map(|at| f64::from(skeleton.graph[at].radius_m));
+            share[parent.index()] * (radius_m / parent_radius_m).powi(2).min(1.0)
+        };
+    }
+    share
+}

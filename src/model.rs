@@ -1,0 +1,243 @@
+//! What was modelled of a scene: its rays, voxels, skeleton and where its lights stand in them; what every estimator reads.
+//!
+//! [`Model::build`] models at a given voxel size; [`choose_voxel_m`] finds one where the user gives none: from 1/128 of the
+//! longest side, halved until halving opens no new passage. Limits: two sizes that agree by chance end the search, and an
+//! opening under two voxels of the finer of them is not seen.
+
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Sources, Status};
+use crate::rays::Rays;
+use crate::scene::{Light, Scene, Sensor};
+use crate::skeleton::{Shape, Skeleton};
+use crate::voxel::{VoxelError, Voxels, voxelise};
+use glam::Vec3;
+use petgraph::graph::NodeIndex;
+use std::sync::Arc;
+
+/// What was modelled of a scene.
+#[derive(Debug)]
+pub struct Model {
+    /// Exact visibility.
+    pub rays: Arc<Rays>,
+    /// What shines.
+    pub sources: Sources,
+    /// Where matter and void are.
+    pub voxels: Voxels,
+    /// Where the void runs.
+    pub skeleton: Skeleton,
+    /// Where each emitter of [`Model::sources`] stands, in their order.
+    pub shining: Vec<Shining>,
+}
+
+/// An emitter as the skeleton sees it: one point with a flux.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shining {
+    /// Its number in [`Sources::emitters`].
+    pub emitter: usize,
+    /// Its centre, metres.
+    pub position_m: Vec3,
+    /// Its total flux, W.
+    pub flux_w: f64,
+    /// The node it enters the skeleton by, or why it has none.
+    pub place: Result<NodeIndex, Status>,
+    /// The straight distance from it to that node, metres; 0 without one.
+    pub to_node_m: f64,
+}
+
+/// A point at which an estimator is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probe {
+    /// Where it is, metres.
+    pub position_m: Vec3,
+    /// Unit normal for planar irradiance, `None` for scalar irradiance.
+    pub normal: Option<Vec3>,
+    /// The node nearest to it along the void, or why it has none.
+    pub place: Result<NodeIndex, Status>,
+}
+
+/// Why a scene could not be modelled.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The voxels failed.
+    #[error(transparent)]
+    Voxel(#[from] VoxelError),
+    /// The run was stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Model {
+    /// Models a scene with voxels of `voxel_m` metres, taking at most `max_bytes` for voxels and skeleton.
+    ///
+    /// # Errors
+    /// [`ModelError::Voxel`] for a grid that does not fit, with the size that would; [`ModelError::Cancelled`].
+    pub fn build(
+        scene: &Scene,
+        rays: Arc<Rays>,
+        voxel_m: f32,
+        max_bytes: u64,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, ModelError> {
+        let sources = Sources::of(scene);
+
+        progress.begin("voxels", 0);
+        let voxels = voxelise(scene, &rays, &sources, voxel_m, max_bytes, progress, cancel)?;
+        progress.end();
+
+        progress.begin("skeleton", 0);
+        let skeleton = Skeleton::build(&voxels, &rays, progress, cancel)?;
+        progress.end();
+
+        let mut model = Self { rays, sources, voxels, skeleton, shining: Vec::new() };
+        model.shining = model.places_of_lights();
+        Ok(model)
+    }
+
+    /// The model for a scene whose lights alone have changed, standing in the same void.
+    pub fn relit(mut self, scene: &Scene) -> Self {
+        self.sources = Sources::of(scene);
+        self.shining = self.places_of_lights();
+        self
+    }
+
+    fn places_of_lights(&self) -> Vec<Shining> {
+        let place = |(emitter, shines): (usize, &crate::light::Emitter)| {
+            let position_m = shines.position_m();
+            let place = self.place(position_m, shines.facing());
+            let to_node_m = place.map_or(0.0, |node| f64::from(self.node_m(node).distance(position_m)));
+            Shining { emitter, position_m, flux_w: shines.flux_w, place, to_node_m }
+        };
+        self.sources.emitters.iter().enumerate().map(place).collect()
+    }
+
+    /// The node that a point, looking along `facing` if it lies on a wall, has along the void; or why it has none.
+    pub fn place(&self, position_m: Vec3, facing: Option<Vec3>) -> Result<NodeIndex, Status> {
+        let voxel = self.voxels.void_voxel(&self.rays, position_m, facing)?;
+        self.skeleton.nearest_node(voxel).ok_or(Status::Unreached)
+    }
+
+    /// Where a node is, metres; the origin for a number beyond the skeleton.
+    pub fn node_m(&self, node: NodeIndex) -> Vec3 {
+        self.skeleton.graph.node_weight(node).map_or(Vec3::ZERO, |node| node.position_m)
+    }
+
+    /// Whether a point sees the centre of a light, whose own body does not hide it.
+    pub fn sees_light(&self, from_m: Vec3, light: &Shining) -> bool {
+        let emitter = self.sources.emitters.get(light.emitter);
+        emitter.is_some_and(|emitter| emitter.is_seen_from(&self.rays, from_m))
+    }
+
+    /// Half a voxel, metres: nearer than that the skeleton tells no distances apart.
+    pub fn nearest_m(&self) -> f64 {
+        0.5 * f64::from(self.voxels.lattice.voxel_m)
+    }
+
+    /// The scene's sensors as probes, in their order.
+    pub fn probes_at_sensors(&self, scene: &Scene) -> Vec<Probe> {
+        let probe = |sensor: &Sensor| self.probe(sensor.position_m, sensor.normal);
+        scene.sensors.iter().map(probe).collect()
+    }
+
+    /// A probe anywhere.
+    pub fn probe(&self, position_m: Vec3, normal: Option<Vec3>) -> Probe {
+        Probe { position_m, normal, place: self.place(position_m, normal) }
+    }
+
+    /// The skeleton's nodes as scalar probes, in their order.
+    pub fn probes_at_nodes(&self) -> Vec<Probe> {
+        let graph = &self.skeleton.graph;
+        let probe = |node| Probe { position_m: self.node_m(node), normal: None, place: Ok(node) };
+        graph.node_indices().map(probe).collect()
+    }
+}
+
+/// Flux of the light that is put into a bare mesh, W: a bright household lamp.
+const BARE_FLUX_W: f64 = 100.0;
+
+/// Puts a light in the middle of the largest cell of a mesh that came without any, and a scalar sensor at the middle of
+/// every cell; says so in the scene's warnings.
+pub fn light_bare_mesh(scene: &mut Scene, model: Model) -> Model {
+    let cells = &model.skeleton.cells;
+    let largest = cells.iter().enumerate().max_by(|(_, a), (_, b)| a.volume_m3.total_cmp(&b.volume_m3));
+    let Some((number, largest)) = largest else {
+        scene.warnings.push("the mesh encloses no void that a light could stand in".to_owned());
+        return model;
+    };
+    let position_m = model.node_m(largest.centre);
+    scene.lights = vec![Light::Point { position_m, flux_w: BARE_FLUX_W }];
+    let sensor = |(cell, centre): (usize, NodeIndex)| Sensor {
+        id: format!("cell {cell}"),
+        position_m: model.node_m(centre),
+        normal: None,
+    };
+    scene.sensors = cells.iter().map(|cell| cell.centre).enumerate().map(sensor).collect();
+    scene.warnings.push(format!(
+        "a bare mesh: a light of {BARE_FLUX_W} W stands at {:.3} in the middle of its largest cell ({number}), and a sensor \
+         in the middle of each",
+        scene.to_user_m(position_m)
+    ));
+    model.relit(scene)
+}
+
+/// The longest side is cut into this many voxels where nobody says how many.
+const FIRST_VOXELS_A_SIDE: f32 = 128.0;
+
+/// No voxel size is chosen by itself that gives more voxels than this.
+const MOST_VOXELS: usize = 200_000_000;
+
+/// A voxel size that was chosen, the model made with it, and why.
+#[derive(Debug)]
+pub struct Chosen {
+    /// The model at that size.
+    pub model: Model,
+    /// Why that size, a sentence.
+    pub reason: String,
+}
+
+/// Chooses the voxel size: from 1/128 of the longest side, halved until halving opens no new passage (components, loops and
+/// necks agree), at most 200 M voxels.
+///
+/// # Errors
+/// As [`Model::build`], for the first size; where a finer one does not fit, the finest that did is taken and the reason
+/// says so.
+pub fn choose_voxel_m(
+    scene: &Scene,
+    rays: &Arc<Rays>,
+    max_bytes: u64,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Chosen, ModelError> {
+    let longest_m = scene.mesh.bounds_m().map_or(1.0, |(low, high)| (high - low).max_element());
+    let build = |voxel_m| Model::build(scene, rays.clone(), voxel_m, max_bytes, progress, cancel);
+
+    let mut voxel_m = longest_m / FIRST_VOXELS_A_SIDE;
+    let mut model = build(voxel_m)?;
+    loop {
+        let finer_m = voxel_m / 2.0;
+        let too_many = 8 * model.voxels.lattice.voxels() > MOST_VOXELS;
+        let finer = if too_many { None } else { Some(build(finer_m)) };
+        match finer {
+            None => return Ok(chosen(model, "half of it would take over 200 million voxels")),
+            Some(Err(ModelError::Voxel(VoxelError::TooLarge { .. }))) => {
+                return Ok(chosen(model, "half of it would not fit in memory"));
+            }
+            Some(Err(error)) => return Err(error),
+            Some(Ok(finer)) if finer.skeleton.shape() == model.skeleton.shape() => {
+                return Ok(chosen(model, "half of it opens no new passage"));
+            }
+            Some(Ok(finer)) => {
+                model = finer;
+                voxel_m = finer_m;
+            }
+        }
+    }
+}
+
+fn chosen(model: Model, because: &str) -> Chosen {
+    let Shape { components, loops, necks } = model.skeleton.shape();
+    let voxel_m = model.voxels.lattice.voxel_m;
+    let reason = format!("voxels of {voxel_m:.4} m: {because} ({components} components, {loops} loops, {necks} necks)");
+    Chosen { model, reason }
+}

@@ -1,0 +1,4 @@
+//! How good is an estimate, and beside what?
+
+pub mod compare;
+pub mod errors;
