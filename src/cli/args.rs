@@ -55,14 +55,14 @@ pub struct Common {
     /// A scene file (.toml), or a mesh (.obj .gltf .glb .ply .stl)
     pub scene: PathBuf,
     /// Edge of a voxel in metres; by default the scene file's, or one that is chosen
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", value_parser = edge_m)]
     pub voxel: Option<f32>,
     /// Factor within which the estimate is to be right
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
     pub tolerance: Option<f64>,
     /// Threads to work on; by default one a core. The figures do not depend on it
-    #[arg(long)]
-    pub threads: Option<usize>,
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
     /// Seed of all random numbers
     #[arg(long)]
     pub seed: Option<u64>,
@@ -72,6 +72,18 @@ pub struct Common {
     /// Folder for the files; made if it is not there
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
+}
+
+/// A length above 0.
+fn edge_m(text: &str) -> Result<f32, String> {
+    let metres: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if metres.is_finite() && metres > 0.0 { Ok(metres) } else { Err("a voxel's edge is above 0 m".to_owned()) }
+}
+
+/// A factor above 1.
+fn factor(text: &str) -> Result<f64, String> {
+    let factor: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if factor.is_finite() && factor > 1.0 { Ok(factor) } else { Err("a tolerance is a factor above 1".to_owned()) }
 }
 
 /// A method by its name.

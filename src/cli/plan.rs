@@ -1,9 +1,8 @@
-//! What will run: the command line and the scene file's `[model]` joined and validated.
+//! What will run: the command line and the scene file's `[model]` joined; what is typed goes before what the file says.
 
 use super::args::Common;
 use crate::light::Settings;
 use crate::scene::{Method, ModelChoice};
-use anyhow::{Result, ensure};
 
 /// What a run was asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,33 +13,41 @@ pub struct Plan {
     pub method: Method,
     /// Seed, samples, bounces.
     pub settings: Settings,
+    /// Threads to work on; `None` for one a core.
+    pub threads: Option<usize>,
+    /// Whether a tolerance was given, which nothing answers to before there are two estimators to choose from.
+    pub has_tolerance: bool,
 }
 
-/// Threads beyond this are a slip of the keyboard.
-const MOST_THREADS: usize = 1024;
-
-/// What can be validated before the scene is read.
-///
-/// # Errors
-/// Names the flag, its value and its bound.
-pub fn check(common: &Common) -> Result<()> {
-    if let Some(voxel_m) = common.voxel {
-        ensure!(voxel_m.is_finite() && voxel_m > 0.0, "--voxel {voxel_m}: a voxel's edge is above 0 m");
+impl Plan {
+    /// The plan of a command: its common flags, its own choices, and the scene file's.
+    pub fn new(common: &Common, method: Option<Method>, settings: Settings, file: &ModelChoice) -> Self {
+        Self {
+            voxel_m: common.voxel.or(file.voxel_m),
+            method: method.or(file.method).unwrap_or(Method::Backward),
+            settings: Settings { seed: common.seed.or(file.seed).unwrap_or(0), ..settings },
+            threads: common.threads.map(usize::from).or(file.threads),
+            has_tolerance: common.tolerance.or(file.tolerance).is_some(),
+        }
     }
-    if let Some(tolerance) = common.tolerance {
-        ensure!(tolerance.is_finite() && tolerance > 1.0, "--tolerance {tolerance}: a tolerance is a factor above 1");
-    }
-    if let Some(threads) = common.threads {
-        ensure!((1..=MOST_THREADS).contains(&threads), "--threads {threads}: from 1 to {MOST_THREADS}");
-    }
-    Ok(())
 }
 
-/// Joins both: what is typed goes before what the file says.
-pub fn plan(common: &Common, method: Option<Method>, samples: u32, bounces: Option<u32>, file: &ModelChoice) -> Plan {
-    Plan {
-        voxel_m: common.voxel.or(file.voxel_m),
-        method: method.or(file.method).unwrap_or(Method::Backward),
-        settings: Settings { seed: common.seed.or(file.seed).unwrap_or(0), samples, max_bounces: bounces },
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn common() -> Common {
+        Common { scene: "x.toml".into(), voxel: None, tolerance: None, threads: None, seed: None, json: false, output: None }
+    }
+
+    #[test]
+    fn what_is_typed_goes_before_what_the_file_says() {
+        let file = ModelChoice { voxel_m: Some(0.1), method: Some(Method::Forward), seed: Some(7), ..Default::default() };
+        let plan = Plan::new(&common(), None, Settings::default(), &file);
+        assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.1), Method::Forward, 7));
+
+        let typed = Common { voxel: Some(0.2), seed: Some(1), ..common() };
+        let plan = Plan::new(&typed, Some(Method::Backward), Settings::default(), &file);
+        assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.2), Method::Backward, 1));
     }
 }

@@ -1,0 +1,214 @@
+//! The commands, each a list of steps.
+
+use super::args::{Args, Command, Common};
+use super::plan::Plan;
+use super::report::{self, Analysis, Comparison};
+use super::stages::{Stages, available_bytes};
+use super::write::{self, Folder};
+use crate::export;
+use crate::flow::estimator;
+use crate::job::{Cancel, Progress};
+use crate::light::{Field, Settings, Sources};
+use crate::model::{Model, choose_voxel_m, light_bare_mesh};
+use crate::rays::Rays;
+use crate::scene::{Method, Reference, Scene};
+use crate::study::compare::{Contestant, Entry, compare};
+use crate::trace;
+use anyhow::{Context, Result};
+use std::io::{IsTerminal, Write};
+use std::sync::Arc;
+
+/// Runs one command to its end.
+///
+/// # Errors
+/// Bad input, a job that failed, or an interrupt.
+pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
+    match args.command {
+        Command::Analyse { common, method } => run_analyse(&common, method, cancel),
+        Command::Compare { common, methods, spp } => run_compare(&common, &methods, spp, cancel),
+        Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
+    }
+}
+
+fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Result<()> {
+    let stages = Stages::new(std::io::stderr().is_terminal());
+    let (mut scene, plan) = open(common, method, Settings::default(), &stages, cancel)?;
+    let (model, mut warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
+    let entry = compare_one(&scene, &model, plan.method, &plan.settings, &stages, cancel)?;
+    warnings.extend(entry.field.warnings.iter().cloned());
+    warn(&warnings);
+
+    let name = plan.method.name();
+    let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
+    if let Some(folder) = &mut folder {
+        write::analysis(folder, &scene, &model, estimator(plan.method), &entry.field, &plan.settings, &stages, cancel)?;
+    }
+    let ended = stages.ended();
+    let analysis = Analysis::new(&scene, &model, name, &entry.field, &ended, &warnings);
+    let json = serde_json::to_string(&analysis)?;
+    if let Some(folder) = &mut folder {
+        folder.file("report.json", |out| writeln!(out, "{json}"))?;
+        eprint!("{}", folder.listing());
+    }
+    if common.json {
+        return say(&format!("{json}\n"));
+    }
+    let mut text = analysis.summary();
+    text += &format!("\n{}", report::sensor_table(&scene, name, &entry.field));
+    if entry.errors.counted > 0 {
+        text += &format!("\n{}", report::error_table(std::slice::from_ref(&entry), |entry| stages.seconds_of(&entry.name)));
+    }
+    text += &format!("\n{}", report::stage_table(&ended));
+    say(&text)
+}
+
+fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &Cancel) -> Result<()> {
+    let stages = Stages::new(std::io::stderr().is_terminal());
+    let settings = Settings { samples: spp.unwrap_or(Settings::default().samples), ..Settings::default() };
+    let (mut scene, plan) = open(common, None, settings, &stages, cancel)?;
+    let (model, mut warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
+    let reference = match spp {
+        Some(_) if scene.reference.is_empty() => traced_reference(&scene, &model, &plan.settings, &stages, cancel)?,
+        _ => scene.reference.clone(),
+    };
+    let contestants: Vec<Contestant> = methods.iter().map(|&method| Contestant::built_in(method)).collect();
+    let entries = compare(&scene, &model, &contestants, &reference, &plan.settings, &stages, cancel)?;
+    warnings.extend(entries.iter().flat_map(|entry| entry.field.warnings.iter().cloned()));
+    warn(&warnings);
+
+    let seconds = |entry: &Entry| stages.seconds_of(&entry.name);
+    let prepare_seconds = stages.seconds_of("voxels") + stages.seconds_of("skeleton");
+    let comparison = Comparison::new(&scene, &model, &entries, &reference, prepare_seconds, seconds);
+    let json = serde_json::to_string(&comparison)?;
+    if let Some(path) = &common.output {
+        let mut folder = Folder::new(path)?;
+        folder.file("compare.json", |out| writeln!(out, "{json}"))?;
+        eprint!("{}", folder.listing());
+    }
+    if common.json {
+        return say(&format!("{json}\n"));
+    }
+    say(&format!(
+        "{}: voxels of {} m, voxels and skeleton in {prepare_seconds:.4} s\n\n{}\n{}",
+        scene.name,
+        model.voxels.lattice.voxel_m,
+        report::comparison_table(&scene, &entries, &reference),
+        report::error_table(&entries, seconds),
+    ))
+}
+
+fn run_trace(common: &Common, spp: u32, bounces: Option<u32>, cancel: &Cancel) -> Result<()> {
+    let stages = Stages::new(std::io::stderr().is_terminal());
+    let settings = Settings { samples: spp, max_bounces: bounces, ..Settings::default() };
+    let (scene, plan) = open(common, None, settings, &stages, cancel)?;
+    warn(&scene.warnings);
+    let rays = Rays::new(&scene);
+    let field = trace::trace(&scene, &rays, &Sources::of(&scene), &plan.settings, &stages, cancel)?;
+    warn(&field.warnings);
+
+    let mut table = Vec::new();
+    export::reference::write(&mut table, &scene, &field, &plan.settings)?;
+    match &common.output {
+        Some(path) => {
+            let mut folder = Folder::new(path)?;
+            folder.file("reference.csv", |out| out.write_all(&table))?;
+            eprint!("{}", folder.listing());
+            Ok(())
+        }
+        None => say(&String::from_utf8_lossy(&table)),
+    }
+}
+
+/// Loads the scene, makes the plan, and sets the number of threads.
+fn open(
+    common: &Common,
+    method: Option<Method>,
+    settings: Settings,
+    stages: &Stages,
+    cancel: &Cancel,
+) -> Result<(Scene, Plan)> {
+    let scene = Scene::load(&common.scene, stages, cancel)?;
+    let plan = Plan::new(common, method, settings, &scene.model);
+    if let Some(threads) = plan.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("the threads cannot be started")?;
+    }
+    Ok((scene, plan))
+}
+
+/// Share of the memory at hand that voxels and skeleton may take; the rest is for rays, fields and the system.
+const MEMORY_SHARE: f64 = 0.8;
+
+/// Voxels and skeleton, at the size asked for or one that is chosen; a bare mesh gets its light. Gives all warnings so far.
+fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> Result<(Model, Vec<String>)> {
+    let max_bytes = available_bytes().map_or(u64::MAX, |bytes| (bytes as f64 * MEMORY_SHARE) as u64);
+    stages.begin("rays", 0);
+    let rays = Arc::new(Rays::new(scene));
+    stages.end();
+
+    let model = match plan.voxel_m {
+        Some(voxel_m) => Model::build(scene, rays, voxel_m, max_bytes, stages, cancel)?,
+        None => {
+            let chosen = choose_voxel_m(scene, &rays, max_bytes, stages, cancel)?;
+            eprintln!("{}", chosen.reason);
+            chosen.model
+        }
+    };
+    let model = if scene.is_bare { light_bare_mesh(scene, model) } else { model };
+
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(model.voxels.warnings.iter().cloned());
+    if model.sources.emitters.is_empty() {
+        warnings.push("the scene has no light".to_owned());
+    }
+    if plan.has_tolerance {
+        warnings.push("the tolerance chooses nothing yet: the method is --method, the voxels are --voxel".to_owned());
+    }
+    Ok((model, warnings))
+}
+
+/// One method at the sensors, with the scene's reference.
+fn compare_one(
+    scene: &Scene,
+    model: &Model,
+    method: Method,
+    settings: &Settings,
+    stages: &Stages,
+    cancel: &Cancel,
+) -> Result<Entry> {
+    let contestants = [Contestant::built_in(method)];
+    let entries = compare(scene, model, &contestants, &scene.reference, settings, stages, cancel)?;
+    entries.into_iter().next().context("no method ran")
+}
+
+/// A reference by our own path tracer, for a scene that has none.
+fn traced_reference(
+    scene: &Scene,
+    model: &Model,
+    settings: &Settings,
+    stages: &Stages,
+    cancel: &Cancel,
+) -> Result<Vec<Option<Reference>>> {
+    stages.begin("reference", 0);
+    let field: Field = trace::trace(scene, &model.rays, &model.sources, settings, stages, cancel)?;
+    stages.end();
+    let row = |reading: &crate::light::Reading| Reference {
+        irradiance_w_m2: reading.value_w_m2,
+        stderr_w_m2: reading.error_w_m2.unwrap_or(0.0),
+        flux_w_m2: reading.flux_w_m2,
+    };
+    Ok(field.readings.iter().map(|reading| Some(row(reading))).collect())
+}
+
+/// Warnings on stderr, a line each.
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Text on stdout.
+fn say(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    Ok(out.flush()?)
+}

@@ -1,0 +1,82 @@
+//! The files of a run: each whole or not at all, in a folder that is made if it is not there.
+
+use super::stages::Stages;
+use crate::export::{field, graphml, ply, skeleton_json, swc, voxels, whole_file};
+use crate::flow::Estimator;
+use crate::job::{Cancel, Progress};
+use crate::light::{Field, Settings};
+use crate::model::Model;
+use crate::scene::Scene;
+use anyhow::{Context, Result};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A folder that files are written into.
+pub struct Folder<'a> {
+    path: &'a Path,
+    written: Vec<PathBuf>,
+}
+
+impl<'a> Folder<'a> {
+    /// The folder at `path`; made if it is not there.
+    ///
+    /// # Errors
+    /// Names the folder and what the file system says.
+    pub fn new(path: &'a Path) -> Result<Self> {
+        std::fs::create_dir_all(path).with_context(|| format!("{}: the folder cannot be made", path.display()))?;
+        Ok(Self { path, written: Vec::new() })
+    }
+
+    /// Writes one file.
+    ///
+    /// # Errors
+    /// Names the file and what the file system says.
+    pub fn file(&mut self, name: &str, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+        let path = self.path.join(name);
+        whole_file(&path, write).with_context(|| format!("{}: cannot be written", path.display()))?;
+        self.written.push(path);
+        Ok(())
+    }
+
+    /// What was written, a line a file.
+    pub fn listing(&self) -> String {
+        self.written.iter().map(|path| format!("wrote {}\n", path.display())).collect()
+    }
+}
+
+/// What `analyse -o` writes, besides its report: voxels, the skeleton with the irradiance at its nodes, and the field at the
+/// sensors and on the mesh.
+///
+/// # Errors
+/// A file that cannot be written, or an interrupt.
+pub fn analysis(
+    folder: &mut Folder,
+    scene: &Scene,
+    model: &Model,
+    estimate: Option<&Estimator>,
+    at_sensors: &Field,
+    settings: &Settings,
+    stages: &Stages,
+    cancel: &Cancel,
+) -> Result<()> {
+    stages.begin("files", 0);
+    let at_nodes = estimate.map(|estimate| estimate(model, &model.probes_at_nodes(), settings, stages, cancel)).transpose()?;
+    let faces_m = model.faces_to_void(scene);
+    let at_faces = estimate
+        .map(|estimate| estimate(model, &model.probes_at_faces(&faces_m), settings, stages, cancel))
+        .transpose()?;
+
+    let skeleton = &model.skeleton;
+    folder.file("voxels.npy", |out| voxels::write_npy(out, &model.voxels))?;
+    folder.file("voxels.json", |out| voxels::write_legend(out, scene, &model.voxels))?;
+    folder.file("skeleton.json", |out| skeleton_json::write(out, scene, skeleton, at_nodes.as_ref()))?;
+    folder.file("skeleton.ply", |out| ply::write_skeleton(out, scene, skeleton, at_nodes.as_ref()))?;
+    folder.file("skeleton.graphml", |out| graphml::write(out, scene, skeleton))?;
+    folder.file("skeleton.swc", |out| swc::write(out, scene, skeleton))?;
+    folder.file("field.csv", |out| field::write_csv(out, scene, at_sensors))?;
+    if let Some(at_faces) = &at_faces {
+        folder.file("field.ply", |out| ply::write_mesh_field(out, scene, &faces_m, at_faces))?;
+    }
+    stages.end();
+    Ok(())
+}
