@@ -1,14 +1,17 @@
 //! What was modelled of a scene: its rays, voxels, skeleton and where its lights stand in them; what every estimator reads.
 //!
-//! [`Model::build`] models at a given voxel size; [`choose_voxel_m`] finds one where the user gives none: from 1/128 of the
-//! longest side, halved until halving opens no new passage. Limits: two sizes that agree by chance end the search, and an
-//! opening under two voxels of the finer of them is not seen.
+//! [`Model::build`] models at a given voxel size; [`choose::choose_voxel_m`] finds one where the user gives none;
+//! [`bare::light_bare_mesh`] lights a mesh that came without a scene file; [`faces`] are where a mesh is asked for its light.
+
+pub mod bare;
+pub mod choose;
+pub mod faces;
 
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Sources, Status};
 use crate::rays::Rays;
-use crate::scene::{Light, Scene, Sensor};
-use crate::skeleton::{Shape, Skeleton};
+use crate::scene::{Scene, Sensor};
+use crate::skeleton::Skeleton;
 use crate::voxel::{VoxelError, Voxels, voxelise};
 use glam::Vec3;
 use petgraph::graph::NodeIndex;
@@ -151,93 +154,4 @@ impl Model {
         let probe = |node| Probe { position_m: self.node_m(node), normal: None, place: Ok(node) };
         graph.node_indices().map(probe).collect()
     }
-}
-
-/// Flux of the light that is put into a bare mesh, W: a bright household lamp.
-const BARE_FLUX_W: f64 = 100.0;
-
-/// Puts a light in the middle of the largest cell of a mesh that came without any, and a scalar sensor at the middle of
-/// every cell; says so in the scene's warnings.
-pub fn light_bare_mesh(scene: &mut Scene, model: Model) -> Model {
-    let cells = &model.skeleton.cells;
-    let largest = cells.iter().enumerate().max_by(|(_, a), (_, b)| a.volume_m3.total_cmp(&b.volume_m3));
-    let Some((number, largest)) = largest else {
-        scene.warnings.push("the mesh encloses no void that a light could stand in".to_owned());
-        return model;
-    };
-    let position_m = model.node_m(largest.centre);
-    scene.lights = vec![Light::Point { position_m, flux_w: BARE_FLUX_W }];
-    let sensor = |(cell, centre): (usize, NodeIndex)| Sensor {
-        id: format!("cell {cell}"),
-        position_m: model.node_m(centre),
-        normal: None,
-    };
-    scene.sensors = cells.iter().map(|cell| cell.centre).enumerate().map(sensor).collect();
-    scene.warnings.push(format!(
-        "a bare mesh: a light of {BARE_FLUX_W} W stands at {:.3} in the middle of its largest cell ({number}), and a sensor \
-         in the middle of each",
-        scene.to_user_m(position_m)
-    ));
-    model.relit(scene)
-}
-
-/// The longest side is cut into this many voxels where nobody says how many.
-const FIRST_VOXELS_A_SIDE: f32 = 128.0;
-
-/// No voxel size is chosen by itself that gives more voxels than this.
-const MOST_VOXELS: usize = 200_000_000;
-
-/// A voxel size that was chosen, the model made with it, and why.
-#[derive(Debug)]
-pub struct Chosen {
-    /// The model at that size.
-    pub model: Model,
-    /// Why that size, a sentence.
-    pub reason: String,
-}
-
-/// Chooses the voxel size: from 1/128 of the longest side, halved until halving opens no new passage (components, loops and
-/// necks agree), at most 200 M voxels.
-///
-/// # Errors
-/// As [`Model::build`], for the first size; where a finer one does not fit, the finest that did is taken and the reason
-/// says so.
-pub fn choose_voxel_m(
-    scene: &Scene,
-    rays: &Arc<Rays>,
-    max_bytes: u64,
-    progress: &dyn Progress,
-    cancel: &Cancel,
-) -> Result<Chosen, ModelError> {
-    let longest_m = scene.mesh.bounds_m().map_or(1.0, |(low, high)| (high - low).max_element());
-    let build = |voxel_m| Model::build(scene, rays.clone(), voxel_m, max_bytes, progress, cancel);
-
-    let mut voxel_m = longest_m / FIRST_VOXELS_A_SIDE;
-    let mut model = build(voxel_m)?;
-    loop {
-        let finer_m = voxel_m / 2.0;
-        let too_many = 8 * model.voxels.lattice.voxels() > MOST_VOXELS;
-        let finer = if too_many { None } else { Some(build(finer_m)) };
-        match finer {
-            None => return Ok(chosen(model, "half of it would take over 200 million voxels")),
-            Some(Err(ModelError::Voxel(VoxelError::TooLarge { .. }))) => {
-                return Ok(chosen(model, "half of it would not fit in memory"));
-            }
-            Some(Err(error)) => return Err(error),
-            Some(Ok(finer)) if finer.skeleton.shape() == model.skeleton.shape() => {
-                return Ok(chosen(model, "half of it opens no new passage"));
-            }
-            Some(Ok(finer)) => {
-                model = finer;
-                voxel_m = finer_m;
-            }
-        }
-    }
-}
-
-fn chosen(model: Model, because: &str) -> Chosen {
-    let Shape { components, loops, necks } = model.skeleton.shape();
-    let voxel_m = model.voxels.lattice.voxel_m;
-    let reason = format!("voxels of {voxel_m:.4} m: {because} ({components} components, {loops} loops, {necks} necks)");
-    Chosen { model, reason }
 }
