@@ -1,7 +1,7 @@
 //! The files of a run: each whole or not at all, in a folder that is made if it is not there.
 
 use super::stages::Stages;
-use crate::export::{field, graphml, ply, skeleton_json, swc, voxels, whole_file};
+use crate::export::{field, graphml, plan, ply, skeleton_json, swc, voxels, whole_file};
 use crate::flow::Estimator;
 use crate::job::{Cancel, Progress};
 use crate::light::{Field, Settings};
@@ -74,6 +74,9 @@ pub fn analysis(
     folder.file("skeleton.graphml", |out| graphml::write(out, scene, skeleton))?;
     folder.file("skeleton.swc", |out| swc::write(out, scene, skeleton))?;
     folder.file("field.csv", |out| field::write_csv(out, scene, at_sensors))?;
+    if let Some(at_nodes) = &at_nodes {
+        folder.file("plan.svg", |out| plan::write(out, scene, model, at_nodes))?;
+    }
     if let Some(at_faces) = &at_faces {
         folder.file("field.ply", |out| ply::write_mesh_field(out, scene, &faces_m, at_faces))?;
     }

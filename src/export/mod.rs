@@ -5,7 +5,9 @@
 
 pub mod field;
 pub mod graphml;
+pub mod plan;
 pub mod ply;
+pub mod reference;
 pub mod skeleton_json;
 pub mod swc;
 pub mod voxels;

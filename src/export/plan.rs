@@ -1,0 +1,184 @@
+//! A picture to see at a glance what was found: the void from above, the skeleton coloured by irradiance, necks, lights,
+//! sensors. SVG, a legend with units in it. Storeys lie over each other.
+
+use crate::light::Field;
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::space::VoxelIndex;
+use glam::Vec3;
+use petgraph::visit::EdgeRef;
+use std::io::{self, Write};
+
+/// Width of the drawing without its margins, in SVG units.
+const WIDTH: f32 = 900.0;
+
+/// Room around the drawing, and under it for the legend.
+const MARGIN: f32 = 20.0;
+const LEGEND: f32 = 60.0;
+
+/// The void is drawn in at most this many cells across; finer ones only make the file larger.
+const MOST_CELLS: usize = 300;
+
+/// Dark to bright: points of the perceptually even scale "inferno" (van der Walt & Smith), for log irradiance.
+const SCALE: [[f32; 3]; 7] = [
+    [40.0, 11.0, 84.0],
+    [101.0, 21.0, 110.0],
+    [159.0, 42.0, 99.0],
+    [212.0, 72.0, 66.0],
+    [245.0, 125.0, 21.0],
+    [250.0, 193.0, 39.0],
+    [252.0, 230.0, 120.0],
+];
+
+/// Decades of irradiance that the colours span, from the brightest node down.
+const DECADES: f64 = 5.0;
+
+/// Writes the plan; `at_nodes` is a field at the skeleton's nodes, in their order.
+///
+/// # Errors
+/// What the writer says.
+pub fn write(out: &mut dyn Write, scene: &Scene, model: &Model, at_nodes: &Field) -> io::Result<()> {
+    let sheet = Sheet::of(model);
+    let [width, height] = [WIDTH + 2.0 * MARGIN, sheet.height + 2.0 * MARGIN + LEGEND];
+    writeln!(out, r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" font-family="sans-serif" font-size="12">"#)?;
+    writeln!(out, r##"<rect width="100%" height="100%" fill="#fff"/>"##)?;
+    draw_void(out, model, &sheet)?;
+    let brightest = at_nodes.readings.iter().map(|reading| reading.value_w_m2).fold(0.0, f64::max);
+    draw_skeleton(out, model, &sheet, at_nodes, brightest)?;
+    draw_necks(out, model, &sheet)?;
+    draw_points(out, scene, model, &sheet)?;
+    draw_legend(out, scene, &sheet, brightest)?;
+    writeln!(out, "</svg>")
+}
+
+/// How metres become places on the sheet: x to the right, y up.
+struct Sheet {
+    low_m: Vec3,
+    units_per_m: f32,
+    height: f32,
+}
+
+impl Sheet {
+    fn of(model: &Model) -> Self {
+        let lattice = &model.voxels.lattice;
+        let [nx, ny, _] = lattice.size.map(|cells| cells as f32);
+        Self { low_m: lattice.origin_m, units_per_m: WIDTH / (nx * lattice.voxel_m), height: WIDTH * ny / nx }
+    }
+
+    fn place(&self, point_m: Vec3) -> [f32; 2] {
+        let from_low = (point_m - self.low_m) * self.units_per_m;
+        [MARGIN + from_low.x, MARGIN + self.height - from_low.y]
+    }
+}
+
+/// Columns that hold void, in runs along x; the more void a column has, the lighter.
+fn draw_void(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<()> {
+    let [nx, ny, nz] = model.voxels.lattice.size;
+    let stride = nx.max(ny).div_ceil(MOST_CELLS);
+    let has_void = |x: usize, y: usize| {
+        (0..nz).any(|z| model.voxels.void.get(VoxelIndex::new(x as i32, y as i32, z as i32)))
+    };
+    let cell = WIDTH / nx as f32 * stride as f32;
+    writeln!(out, r##"<g fill="#d9dde3">"##)?;
+    for (row, y) in (0..ny).step_by(stride).enumerate() {
+        let open: Vec<bool> = (0..nx).step_by(stride).map(|x| has_void(x, y)).collect();
+        let mut start = 0;
+        for run in open.chunk_by(|a, b| a == b) {
+            if run[0] {
+                let [left, top] = [MARGIN + start as f32 * cell, MARGIN + sheet.height - (row + 1) as f32 * cell];
+                let wide = run.len() as f32 * cell;
+                writeln!(out, r#"<rect x="{left:.1}" y="{top:.1}" width="{wide:.1}" height="{:.1}"/>"#, cell + 0.2)?;
+            }
+            start += run.len();
+        }
+    }
+    writeln!(out, "</g>")
+}
+
+fn draw_skeleton(out: &mut dyn Write, model: &Model, sheet: &Sheet, at_nodes: &Field, brightest: f64) -> io::Result<()> {
+    writeln!(out, r#"<g stroke-width="3" stroke-linecap="round">"#)?;
+    for edge in model.skeleton.graph.edge_references() {
+        let [[x1, y1], [x2, y2]] = [edge.source(), edge.target()].map(|end| sheet.place(model.node_m(end)));
+        let value = |end: petgraph::graph::NodeIndex| at_nodes.readings.get(end.index()).map_or(0.0, |reading| reading.value_w_m2);
+        let colour = colour((value(edge.source()) + value(edge.target())) / 2.0, brightest);
+        writeln!(out, r#"<line x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}" stroke="{colour}"/>"#)?;
+    }
+    writeln!(out, "</g>")
+}
+
+/// Necks as bars across the passage, as wide as a square of their area; those that lead up or down as squares.
+fn draw_necks(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<()> {
+    writeln!(out, r##"<g stroke="#0a7d8c" stroke-width="4" fill="none">"##)?;
+    for neck in &model.skeleton.necks {
+        let [x, y] = sheet.place(neck.position_m);
+        let half = neck.area_m2.sqrt() / 2.0 * sheet.units_per_m;
+        let level = Vec3::new(neck.normal.x, neck.normal.y, 0.0);
+        if level.length() > 0.5 {
+            let [across_x, across_y] = [half * -level.y / level.length(), half * -level.x / level.length()];
+            let [x1, y1, x2, y2] = [x - across_x, y - across_y, x + across_x, y + across_y];
+            writeln!(out, r#"<line x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}"/>"#)?;
+        } else {
+            let [left, top, side] = [x - half, y - half, 2.0 * half];
+            writeln!(out, r#"<rect x="{left:.1}" y="{top:.1}" width="{side:.1}" height="{side:.1}"/>"#)?;
+        }
+    }
+    writeln!(out, "</g>")
+}
+
+/// More sensors than this are drawn without their names.
+const MOST_NAMES: usize = 40;
+
+fn draw_points(out: &mut dyn Write, scene: &Scene, model: &Model, sheet: &Sheet) -> io::Result<()> {
+    for light in &model.shining {
+        let [x, y] = sheet.place(light.position_m);
+        writeln!(out, r##"<circle cx="{x:.1}" cy="{y:.1}" r="7" fill="#ffd400" stroke="#333"/>"##)?;
+    }
+    for sensor in &scene.sensors {
+        let [x, y] = sheet.place(sensor.position_m);
+        writeln!(out, r##"<circle cx="{x:.1}" cy="{y:.1}" r="3" fill="#1a56c4"/>"##)?;
+        if scene.sensors.len() <= MOST_NAMES {
+            let [x, y] = [x + 6.0, y - 6.0];
+            writeln!(out, r##"<text x="{x:.1}" y="{y:.1}" fill="#1a56c4">{}</text>"##, escaped(&sensor.id))?;
+        }
+    }
+    Ok(())
+}
+
+fn draw_legend(out: &mut dyn Write, scene: &Scene, sheet: &Sheet, brightest: f64) -> io::Result<()> {
+    let top = sheet.height + 2.0 * MARGIN;
+    let step = 40.0;
+    for decade in 0..=DECADES as usize {
+        let value = brightest * 10_f64.powf(decade as f64 - DECADES);
+        let left = MARGIN + decade as f32 * step;
+        writeln!(out, r#"<rect x="{left:.1}" y="{top:.1}" width="{step}" height="12" fill="{}"/>"#, colour(value, brightest))?;
+        writeln!(out, r#"<text x="{left:.1}" y="{:.1}" font-size="10">{value:.0e}</text>"#, top + 24.0)?;
+    }
+    let [left, line] = [MARGIN + 7.0 * step, top + 11.0];
+    writeln!(
+        out,
+        r##"<text x="{left:.1}" y="{line:.1}">W/m2 at the skeleton's nodes; yellow: lights; blue: sensors; teal: necks</text>"##
+    )?;
+    let metre = sheet.units_per_m;
+    writeln!(out, r##"<line x1="{left:.1}" y1="{0:.1}" x2="{1:.1}" y2="{0:.1}" stroke="#333"/>"##, top + 24.0, left + metre)?;
+    writeln!(
+        out,
+        r#"<text x="{:.1}" y="{:.1}">1 m; {} from above</text>"#,
+        left + metre + 6.0,
+        top + 28.0,
+        escaped(&scene.name)
+    )
+}
+
+/// The colour of an irradiance, by its decades below the brightest.
+fn colour(value: f64, brightest: f64) -> String {
+    let share = if value > 0.0 { 1.0 + (value / brightest).log10() / DECADES } else { 0.0 };
+    let along = share.clamp(0.0, 1.0) as f32 * (SCALE.len() - 1) as f32;
+    let [low, high] = [along.floor(), along.ceil()].map(|step| SCALE[step as usize]);
+    let mix = |channel: usize| low[channel] + (high[channel] - low[channel]) * along.fract();
+    format!("rgb({:.0},{:.0},{:.0})", mix(0), mix(1), mix(2))
+}
+
+/// A name as XML text.
+fn escaped(name: &str) -> String {
+    name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
