@@ -1,0 +1,164 @@
+//! The program as a user meets it: exit codes, one clear line for an error, Ctrl-C, files, JSON.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+const GALLERY: &str = "scenes/gallery/gallery.toml";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn lightvein(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lightvein"));
+    command.current_dir(root()).args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    lightvein(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Exit code `code`, nothing on stdout, and an error that says `says`.
+#[track_caller]
+fn refuses(arguments: &[&str], code: i32, says: &str) {
+    let output = run(arguments);
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    assert!(stderr.contains(says), "{arguments:?} should say {says:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?}: {}", text(&output.stdout));
+}
+
+#[test]
+fn a_wrong_path_is_named() {
+    refuses(&["analyse", "no/such/scene.toml"], 1, "no/such/scene.toml");
+}
+
+#[test]
+fn wrong_usage_is_told_apart_from_bad_input() {
+    refuses(&["analyse"], 2, "SCENE");
+    refuses(&["analyse", GALLERY, "--sharpness", "3"], 2, "--sharpness");
+    refuses(&["analyse", GALLERY, "--voxel", "0"], 2, "above 0 m");
+    refuses(&["analyse", GALLERY, "--voxel", "wide"], 2, "not a number");
+    refuses(&["analyse", GALLERY, "--method", "guess"], 2, "backward");
+    refuses(&["analyse", GALLERY, "--threads", "0"], 2, "1..=1024");
+    refuses(&["analyse", GALLERY, "--tolerance", "0.5"], 2, "factor above 1");
+}
+
+#[test]
+fn a_wrong_key_names_its_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("wrong.toml");
+    fs::write(&scene, "name = \"wrong\"\n[geometry]\nmeshes = [\"a.obj\"]\nreflectanse = 0.5\n").unwrap();
+    refuses(&["analyse", scene.to_str().unwrap()], 1, "wrong.toml:4");
+}
+
+#[test]
+fn a_grid_that_does_not_fit_says_which_voxel_would() {
+    refuses(&["analyse", GALLERY, "--voxel", "0.00001"], 1, "--voxel");
+}
+
+#[test]
+fn analyse_speaks_the_json_of_the_contract() {
+    let output = run(&["analyse", GALLERY, "--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let keys = ["scene", "method", "voxel_m", "grid", "void_voxels", "skeleton", "stages", "peak_memory_mb", "sensors", "warnings"];
+    for key in keys {
+        assert!(!json[key].is_null(), "{key} is missing");
+    }
+    for key in ["nodes", "edges", "components", "loops", "cells", "necks"] {
+        assert!(json["skeleton"][key].is_u64(), "skeleton.{key} is missing");
+    }
+    let sensors = json["sensors"].as_array().unwrap();
+    assert_eq!(sensors.len(), 7);
+    for sensor in sensors {
+        assert_eq!(sensor["status"], "ok");
+        assert!(sensor["value"].as_f64().unwrap() > 0.0);
+        assert_eq!(sensor["direction"].as_array().unwrap().len(), 3);
+    }
+}
+
+#[test]
+fn compare_speaks_the_json_of_the_contract() {
+    let output = run(&["compare", GALLERY, "--methods", "backward,forward", "--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["prepare_seconds"].as_f64().unwrap() > 0.0);
+    let methods = json["methods"].as_array().unwrap();
+    assert_eq!(methods.iter().map(|method| method["name"].as_str().unwrap()).collect::<Vec<_>>(), ["backward", "forward"]);
+    for method in methods {
+        for key in ["seconds", "rms_factor", "max_factor", "median_angle_deg"] {
+            assert!(method[key].is_f64(), "{key} is missing");
+        }
+        for sensor in method["sensors"].as_array().unwrap() {
+            let ratio = sensor["value"].as_f64().unwrap() / sensor["reference"].as_f64().unwrap();
+            assert!((sensor["ratio"].as_f64().unwrap() - ratio).abs() < 1e-9 * ratio);
+        }
+    }
+}
+
+#[test]
+fn analyse_writes_its_files_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("made/for/it");
+    let output = run(&["analyse", GALLERY, "-o", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let mut names: Vec<String> = files(&out).iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    names.sort();
+    let want = [
+        "field.csv", "field.ply", "plan.svg", "report.json", "skeleton.graphml", "skeleton.json", "skeleton.ply", "skeleton.swc",
+        "voxels.json", "voxels.npy",
+    ];
+    assert_eq!(names, want);
+    let skeleton: Value = serde_json::from_slice(&fs::read(out.join("skeleton.json")).unwrap()).unwrap();
+    assert!(skeleton["units"]["length"].is_string());
+    assert!(!skeleton["nodes"].as_array().unwrap().is_empty());
+    let field = fs::read_to_string(out.join("field.csv")).unwrap();
+    assert_eq!(field.lines().count(), 8);
+}
+
+#[test]
+fn trace_gives_rows_that_a_scene_can_refer_to() {
+    let output = run(&["trace", "scenes/furnace/furnace.toml", "--spp", "16"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let table = text(&output.stdout);
+    let mut rows = table.lines().filter(|line| !line.starts_with('#'));
+    assert_eq!(rows.next(), Some("id,irradiance,stderr,fx,fy,fz"));
+    assert!(rows.all(|row| row.split(',').count() == 6));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_it_with_130_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let arguments = ["trace", GALLERY, "--spp", "400000000", "-o", out.to_str().unwrap()];
+    let child = lightvein(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    assert_eq!(files(folder.path()), Vec::<PathBuf>::new());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    refuses(&["compare", GALLERY, "-o", "/dev/null/out"], 1, "/dev/null/out");
+}
+
+/// All files below a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let paths = entries.map(|entry| entry.unwrap().path());
+    paths.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}
