@@ -93,9 +93,14 @@ impl Model {
         let skeleton = Skeleton::build(&voxels, &rays, progress, cancel)?;
         progress.end();
 
+        Ok(Self::of(rays, sources, voxels, skeleton))
+    }
+
+    /// The model that these parts of one scene make.
+    pub fn of(rays: Arc<Rays>, sources: Sources, voxels: Voxels, skeleton: Skeleton) -> Self {
         let mut model = Self { rays, sources, voxels, skeleton, shining: Vec::new() };
         model.shining = model.places_of_lights();
-        Ok(model)
+        model
     }
 
     /// The model for a scene whose lights alone have changed, standing in the same void.

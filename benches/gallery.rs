@@ -1,0 +1,81 @@
+//! From the gallery's mesh to estimates at its sensors, voxels of 0.1 m: `cargo bench --bench gallery`.
+//!
+//! Prints medians of 15 runs after a warm-up for each stage and each estimator, for one thread and for two, and the peak
+//! memory of a run of the program. Loading the mesh is not counted, building the rays is.
+
+use lightvein::flow::estimator;
+use lightvein::job::{Cancel, Quiet};
+use lightvein::light::Settings;
+use lightvein::model::Model;
+use lightvein::rays::Rays;
+use lightvein::scene::{Method, Scene};
+use lightvein::skeleton::Skeleton;
+use lightvein::voxel::voxelise;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+const RUNS: usize = 15;
+const VOXEL_M: f32 = 0.1;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/gallery.toml");
+    let scene = Scene::load(&path, &Quiet, &Cancel::new())?;
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        println!("{threads} thread(s), medians of {RUNS} runs, ms");
+        pool.install(|| time_stages(&scene))?;
+    }
+    Ok(())
+}
+
+fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error>> {
+    let names = ["rays", "voxels", "skeleton", "places", "backward", "forward", "all"];
+    let mut times_ms = vec![Vec::new(); names.len()];
+    for run in 0..=RUNS {
+        let row = time_once(scene)?;
+        // The first run warms caches and the allocator up.
+        if run > 0 {
+            for (column, ms) in times_ms.iter_mut().zip(row) {
+                column.push(ms);
+            }
+        }
+    }
+    for (name, mut column) in names.into_iter().zip(times_ms) {
+        column.sort_by(f64::total_cmp);
+        println!("  {name:10} {:8.2}   ({:.2} to {:.2})", column[RUNS / 2], column[0], column[RUNS - 1]);
+    }
+    Ok(())
+}
+
+/// One run; milliseconds in the order of the names.
+fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error>> {
+    let (progress, cancel, settings) = (Quiet, Cancel::new(), Settings::default());
+    let began = Instant::now();
+    let mut laps_ms = Vec::new();
+    let mut lap = || laps_ms.push(began.elapsed().as_secs_f64() * 1e3);
+
+    let rays = Arc::new(Rays::new(scene));
+    lap();
+    let sources = lightvein::light::Sources::of(scene);
+    let voxels = voxelise(scene, &rays, &sources, VOXEL_M, u64::MAX, &progress, &cancel)?;
+    lap();
+    let skeleton = Skeleton::build(&voxels, &rays, &progress, &cancel)?;
+    lap();
+    let model = Model::of(rays, sources, voxels, skeleton);
+    let probes = model.probes_at_sensors(scene);
+    lap();
+    for method in [Method::Backward, Method::Forward] {
+        let estimate = estimator(method).ok_or("not an estimator")?;
+        std::hint::black_box(estimate(&model, &probes, &settings, &progress, &cancel)?);
+        lap();
+    }
+    let all_ms = began.elapsed().as_secs_f64() * 1e3;
+    let mut before_ms = 0.0;
+    let mut row = [all_ms; 7];
+    for (stage_ms, lap_ms) in row.iter_mut().zip(laps_ms) {
+        *stage_ms = lap_ms - before_ms;
+        before_ms = lap_ms;
+    }
+    Ok(row)
+}
