@@ -12,3 +12,7 @@ pub mod rays;
 pub mod skeleton;
 
 pub mod light;
+
+pub mod trace;
+
+pub mod export;

@@ -1,0 +1,3 @@
+//! Every file format we write.
+
+pub mod reference;
