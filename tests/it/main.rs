@@ -1,0 +1,4 @@
+//! Behaviour of the library and the program, one module a topic.
+
+/// Scene files, meshes, sensors and references as they should be.
+mod scene_files;
