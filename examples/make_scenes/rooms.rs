@@ -9,24 +9,32 @@ const UP: [f64; 3] = [0.0, 0.0, 1.0];
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 
 /// A closed grey box. The area mean of the irradiance of its walls is flux / (area (1 - reflectance)), whatever the
-/// light's place; the planar sensors sit in the middle of equal patches, so their plain mean is the area mean.
+/// light's place. The planar sensors are the two-point Gauss rule in squares of equal size, whose points count alike:
+/// their plain mean is the area mean but for 1e-4 (points in the middle of squares this small: 6e-3).
 pub fn furnace() -> Scene {
-    const PATCH_M: f64 = 0.5125;
-    const PATCHES: [usize; 3] = [8, 6, 5];
-    let size = PATCHES.map(|n| n as f64 * PATCH_M);
+    const SQUARE_M: f64 = 1.025;
+    const SQUARES: [usize; 3] = [4, 3, 3];
+    let size = SQUARES.map(|n| n as f64 * SQUARE_M);
+    let along = |axis: usize| -> Vec<f64> {
+        (0..SQUARES[axis])
+            .flat_map(|i| {
+                [-0.5, 0.5].map(|side| (i as f64 + 0.5 + side / f64::sqrt(3.0)) * SQUARE_M)
+            })
+            .collect()
+    };
 
     let mut sensors = Vec::new();
     for axis in 0..3 {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         for (side, far) in [("low", false), ("high", true)] {
             let name = ["x", "y", "z"][axis];
-            for i in 0..PATCHES[u] {
-                for j in 0..PATCHES[v] {
+            for (i, &at_u) in along(u).iter().enumerate() {
+                for (j, &at_v) in along(v).iter().enumerate() {
                     // Every other sensor stands 1 mm off its wall, as a user's might.
                     let off = if (i + j) % 2 == 1 { 0.001 } else { 0.0 };
                     let mut position = [0.0; 3];
-                    position[u] = (i as f64 + 0.5) * PATCH_M;
-                    position[v] = (j as f64 + 0.5) * PATCH_M;
+                    position[u] = at_u;
+                    position[v] = at_v;
                     position[axis] = if far { size[axis] - off } else { off };
                     let mut normal = [0.0; 3];
                     normal[axis] = if far { -1.0 } else { 1.0 };
@@ -45,14 +53,14 @@ pub fn furnace() -> Scene {
         mesh: Plan::default().void([0.0; 3], size).mesh(|_| ""),
         materials: vec![],
         lights: vec![Light::Point {
-            position: DVec3::new(1.47, 1.71, 1.31),
+            position: DVec3::new(1.69, 1.43, 1.61),
             flux_w: 100.0,
         }],
         voxel_m: 0.1,
         tables: vec![Table {
             file: "sensors.csv",
-            about: "x_low to z_high: the walls in 236 equal patches of 0.5125 m, a sensor in the middle of each, so that\n\
-                    their plain mean is the area mean; every other one 1 mm off its wall, the rest exactly on it.\n\
+            about: "x_low to z_high: the six walls, two-point Gauss rule in squares of 1.025 m, so that the plain mean of\n\
+                    these 264 sensors is the area mean; every other one 1 mm off its wall, the rest exactly on it.\n\
                     air_*: scalar sensors.",
             sensors,
         }],
@@ -136,40 +144,39 @@ pub fn two_rooms() -> Scene {
 pub fn corridor() -> Scene {
     let height = 2.47;
     let plan = Plan::default()
-        .void([0.0, 0.0, 0.0], [7.31, 1.63, height])
-        .void([5.68, 1.63, 0.0], [7.31, 6.29, height])
-        .void([7.31, 4.66, 0.0], [13.03, 6.29, height])
-        .void([11.41, 0.57, 0.0], [13.03, 4.66, height]);
+        .void([0.0, 0.0, 0.0], [5.93, 1.63, height])
+        .void([4.31, 1.63, 0.0], [5.93, 5.37, height])
+        .void([5.93, 3.74, 0.0], [10.27, 5.37, height])
+        .void([8.64, 1.17, 0.0], [10.27, 3.74, height]);
     let mut sensors: Vec<Sensor> = [
         [1.67, 0.61, 1.33],
-        [2.93, 1.07, 1.09],
-        [4.19, 0.73, 1.21],
-        [5.37, 0.97, 1.37],
-        [6.61, 0.69, 1.13],
-        [6.37, 1.97, 1.27],
-        [6.71, 3.23, 1.03],
-        [6.29, 4.41, 1.41],
-        [6.43, 5.57, 1.17],
-        [7.83, 5.33, 1.29],
-        [9.17, 5.71, 1.07],
-        [10.53, 5.29, 1.23],
-        [12.07, 5.61, 1.39],
-        [12.37, 4.21, 1.11],
-        [12.07, 2.83, 1.31],
-        [12.33, 1.49, 1.19],
+        [2.71, 1.07, 1.09],
+        [3.79, 0.73, 1.21],
+        [4.83, 0.97, 1.37],
+        [5.27, 1.89, 1.13],
+        [4.97, 2.93, 1.27],
+        [5.31, 3.91, 1.03],
+        [4.93, 4.57, 1.41],
+        [6.07, 4.37, 1.17],
+        [7.13, 4.73, 1.29],
+        [8.21, 4.31, 1.07],
+        [9.23, 4.67, 1.23],
+        [9.61, 3.59, 1.39],
+        [9.31, 2.57, 1.11],
+        [9.53, 1.61, 1.31],
     ]
     .into_iter()
     .enumerate()
     .map(|(i, position)| scalar(format!("s{:02}", i + 1), position))
     .collect();
     sensors.extend([
-        planar("floor_1_on", [3.61, 0.87, 0.0], UP),
-        planar("floor_2_off", [6.47, 2.81, 0.001], UP),
-        planar("floor_3_on", [9.73, 5.43, 0.0], UP),
-        planar("floor_4_off", [12.31, 2.19, 0.001], UP),
-        planar("bend_1_off", [7.309, 0.77, 1.27], [-1.0, 0.0, 0.0]),
-        planar("bend_2_on", [6.59, 6.29, 1.33], [0.0, -1.0, 0.0]),
-        planar("end_off", [12.17, 0.571, 1.09], [0.0, 1.0, 0.0]),
+        planar("floor_1_on", [3.11, 0.87, 0.0], UP),
+        planar("floor_2_off", [5.17, 2.43, 0.001], UP),
+        planar("floor_3_on", [7.61, 4.49, 0.0], UP),
+        planar("floor_4_off", [9.37, 2.69, 0.001], UP),
+        planar("bend_1_off", [5.929, 0.77, 1.27], [-1.0, 0.0, 0.0]),
+        planar("bend_2_on", [5.21, 5.37, 1.33], [0.0, -1.0, 0.0]),
+        planar("end_off", [9.41, 1.171, 1.09], [0.0, 1.0, 0.0]),
     ]);
     Scene {
         name: "corridor",
@@ -182,14 +189,14 @@ pub fn corridor() -> Scene {
         voxel_m: 0.1,
         tables: vec![Table {
             file: "sensors.csv",
-            about: "s01 to s16: scalar, along the corridor, off its middle. The rest face along their normal;\n\
+            about: "s01 to s15: scalar, along the corridor, off its middle. The rest face along their normal;\n\
                     *_on lie exactly on their wall, *_off 1 mm off it.",
             sensors,
         }],
         variants: vec![Variant {
             name: "corridor",
             about: "A corridor with three bends, a light at one end and a blind wall at the other.",
-            reflectance: 0.6,
+            reflectance: 0.7,
             sensors: "sensors.csv",
             reference: "reference.csv",
         }],
