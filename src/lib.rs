@@ -7,6 +7,12 @@ pub mod space;
 
 pub mod scene;
 
+pub mod rays;
+
 pub mod skeleton;
 
 pub mod light;
+
+pub mod trace;
+
+pub mod export;

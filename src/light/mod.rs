@@ -1,9 +1,16 @@
 //! How much light arrives, and from where: the question every estimator is asked and the answer it gives.
 //!
 //! [`Sources`] are what shines, [`Settings`] what the caller chooses, a [`Field`] is the answer at the scene's sensors in
-//! their order. Estimators (`flow`) and truth (`trace`) share these and never import each other.
+//! their order. Estimators (`flow`) and truth (`trace`) share these and never import each other. What a scene's sources
+//! are, and where each stands, is in `sources`; how to draw a direction towards one, in `sampling`.
 
-use crate::scene::{Light, Scene};
+mod sampling;
+mod sources;
+
+pub use sampling::{LightSample, Sampler};
+pub use sources::Aim;
+
+use crate::scene::Light;
 use glam::{DVec3, Vec3};
 
 /// Everything that shines in a scene: its lights, then one entry for each connected patch of emissive mesh faces.
@@ -25,7 +32,7 @@ pub struct Emitter {
 /// The body of an emitter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// The light of that number in [`Scene::lights`].
+    /// The light of that number in [`Scene::lights`](crate::scene::Scene::lights).
     Light(usize, Light),
     /// Mesh triangles that give off `radiance_w_m2_sr` on their front side.
     Patch {
@@ -107,16 +114,6 @@ pub struct Field {
     pub readings: Vec<Reading>,
     /// What a reader of the field should know, a sentence each.
     pub warnings: Vec<String>,
-}
-
-impl Sources {
-    /// The sources of a scene.
-    pub fn of(scene: &Scene) -> Self {
-        let lights = scene.lights.iter().enumerate();
-        let emitters =
-            lights.map(|(number, &light)| Emitter { shape: Shape::Light(number, light), flux_w: light.flux_w() });
-        Self { emitters: emitters.collect() }
-    }
 }
 
 impl Light {

@@ -1,0 +1,190 @@
+//! How much light is there truly? An unidirectional path tracer, plain, slow and trusted.
+//!
+//! Method: paths from the sensor with next-event estimation at every vertex (Kajiya 1986; Shirley, Wang & Zimmerman
+//! 1996), Lambertian surfaces reflecting on both sides, thin glazing, Russian roulette after eight surfaces, any number of
+//! reflections. Every sample is independent, so the standard error comes from their variance.
+//!
+//! Limits: no light passes that needs a hit on a lamp by chance (there are no mirrors, so nothing is lost). Where a few
+//! rare paths carry the light, the standard error is itself a rare event: [`Traced::top_share`] shows it, and such
+//! sensors are named in the warnings. A wall very near a point light gives rare, very bright samples.
+
+mod path;
+mod random;
+
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Field, Reading, Sampler, Settings, Shape, Sources, Status};
+use crate::rays::Rays;
+use crate::scene::{Light, Scene, Sensor};
+use glam::DVec3;
+use path::Paths;
+use random::Random;
+use rayon::prelude::*;
+
+/// Samples that one thread takes in a row, with a random stream of their own. Small enough that two threads share a single
+/// sensor's work and that a run can be stopped within milliseconds.
+const BLOCK: u32 = 128;
+
+/// Blocks whose results are held at a time: 4 MB.
+const BLOCKS_HELD: u64 = 65_536;
+
+/// A largest sample above this share of the sum makes the standard error worthless.
+const LARGEST_TRUSTED_SHARE: f64 = 0.05;
+
+/// Path-traced readings.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Traced {
+    /// The readings; [`Reading::error_w_m2`] is the standard error (`None` for a single sample).
+    pub field: Field,
+    /// For each sensor its largest sample over the sum of all; above 0.05 its standard error is not to be trusted.
+    pub top_share: Vec<f64>,
+}
+
+/// Traces [`Settings::samples`] paths (at least 1) from each sensor.
+///
+/// `rays` and `sources` are those of `scene`. Runs on the current rayon pool; any number of threads gives the same bits.
+/// The stage is "trace", its unit 128 samples. A sensor inside a sphere light is [`Status::InSolid`]; one that no sample
+/// found light for is [`Status::Dark`].
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised; it is looked at every 128 samples.
+pub fn trace(
+    scene: &Scene,
+    rays: &Rays,
+    sources: &Sources,
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Traced, Cancelled> {
+    let sampler = Sampler::new(scene, sources, rays.epsilon_m());
+    let paths = Paths { scene, rays, sampler: &sampler, max_bounces: settings.max_bounces.unwrap_or(u32::MAX) };
+    let samples = settings.samples.max(1);
+    let blocks = u64::from(samples.div_ceil(BLOCK));
+    let total = blocks * scene.sensors.len() as u64;
+
+    // Blocks run in any order on any thread, and are added up in their own.
+    let mut sums = vec![Sums::default(); scene.sensors.len()];
+    progress.begin("trace", total);
+    let mut first = 0;
+    while first < total {
+        let last = total.min(first + BLOCKS_HELD);
+        let part: Result<Vec<Sums>, Cancelled> = (0..(last - first) as usize)
+            .into_par_iter()
+            .map(|offset| {
+                cancel.check()?;
+                let (sensor, block) = ((first + offset as u64) / blocks, (first + offset as u64) % blocks);
+                let count = BLOCK.min(samples - block as u32 * BLOCK);
+                let random = Random::new(settings.seed, sensor, block);
+                let sums = Sums::of(&paths, &scene.sensors[sensor as usize], count, random);
+                progress.advance(1);
+                Ok(sums)
+            })
+            .collect();
+        for (offset, block) in part?.iter().enumerate() {
+            sums[((first + offset as u64) / blocks) as usize].add(block);
+        }
+        first = last;
+    }
+    progress.end();
+
+    let standings: Vec<Standing> = scene.sensors.iter().map(|sensor| Standing::of(sensor, sources)).collect();
+    let readings = sums.iter().zip(&standings).map(|(sums, standing)| sums.reading(*standing)).collect();
+    let top_share: Vec<f64> = sums.iter().map(Sums::top_share).collect();
+    let warnings = warnings(scene, &standings, &top_share);
+    Ok(Traced { field: Field { readings, warnings }, top_share })
+}
+
+/// What is known of a number of samples.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    samples: f64,
+    value: f64,
+    squares: f64,
+    largest: f64,
+    flux: DVec3,
+}
+
+impl Sums {
+    fn of(paths: &Paths, sensor: &Sensor, count: u32, mut random: Random) -> Self {
+        let mut sums = Self::default();
+        for _ in 0..count {
+            let sample = paths.sample(sensor, &mut random);
+            sums.add(&Self {
+                samples: 1.0,
+                value: sample.value_w_m2,
+                squares: sample.value_w_m2 * sample.value_w_m2,
+                largest: sample.value_w_m2,
+                flux: sample.flux_w_m2,
+            });
+        }
+        sums
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.value += other.value;
+        self.squares += other.squares;
+        self.largest = self.largest.max(other.largest);
+        self.flux += other.flux;
+    }
+
+    fn reading(&self, standing: Standing) -> Reading {
+        if standing == Standing::InLight {
+            return Reading::none(Status::InSolid);
+        }
+        let mean = self.value / self.samples;
+        let variance = (self.squares / self.samples - mean * mean).max(0.0);
+        let error = (self.samples > 1.0).then(|| (variance / (self.samples - 1.0)).sqrt());
+        let status = if self.value > 0.0 { Status::Ok } else { Status::Dark };
+        Reading { value_w_m2: mean, flux_w_m2: self.flux / self.samples, error_w_m2: error, status }
+    }
+
+    fn top_share(&self) -> f64 {
+        if self.value > 0.0 { self.largest / self.value } else { 0.0 }
+    }
+}
+
+/// How a sensor stands to the lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Standing {
+    Free,
+    /// Inside the body of a sphere light.
+    InLight,
+    /// Exactly on a point light, whose direct light is infinite there.
+    OnPoint,
+}
+
+impl Standing {
+    fn of(sensor: &Sensor, sources: &Sources) -> Self {
+        let at_m = sensor.position_m;
+        let stands = sources.emitters.iter().map(|emitter| match emitter.shape {
+            Shape::Light(_, Light::Sphere { centre_m, radius_m, .. }) if at_m.distance(centre_m) < radius_m => {
+                Self::InLight
+            }
+            Shape::Light(_, Light::Point { position_m, .. }) if at_m == position_m => Self::OnPoint,
+            _ => Self::Free,
+        });
+        stands.fold(Self::Free, |worst, standing| if worst == Self::Free { standing } else { worst })
+    }
+}
+
+fn warnings(scene: &Scene, standings: &[Standing], top_share: &[f64]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for ((sensor, standing), share) in scene.sensors.iter().zip(standings).zip(top_share) {
+        match standing {
+            Standing::InLight => warnings.push(format!("sensor {}: lies inside a sphere light", sensor.id)),
+            Standing::OnPoint => warnings.push(format!(
+                "sensor {}: lies on a point light, whose direct light is infinite there and left out",
+                sensor.id
+            )),
+            Standing::Free => {}
+        }
+        if *share > LARGEST_TRUSTED_SHARE {
+            let percent = 100.0 * share;
+            warnings.push(format!(
+                "sensor {}: one sample is {percent:.0}% of the sum; its standard error is not to be trusted",
+                sensor.id
+            ));
+        }
+    }
+    warnings
+}
