@@ -8,7 +8,7 @@ use super::write::{self, Folder};
 use crate::export;
 use crate::flow::estimator;
 use crate::job::{Cancel, Progress};
-use crate::light::{Field, Settings, Sources};
+use crate::light::{Settings, Sources};
 use crate::model::Model;
 use crate::model::bare::light_bare_mesh;
 use crate::model::choose::choose_voxel_m;
@@ -105,11 +105,18 @@ fn run_trace(common: &Common, spp: u32, bounces: Option<u32>, cancel: &Cancel) -
     let (scene, plan) = open(common, None, settings, &stages, cancel)?;
     warn(&scene.warnings);
     let rays = Rays::new(&scene);
-    let field = trace::trace(&scene, &rays, &Sources::of(&scene), &plan.settings, &stages, cancel)?;
+    let field = trace::trace(&scene, &rays, &Sources::of(&scene), &plan.settings, &stages, cancel)?.field;
     warn(&field.warnings);
 
+    let bounces = bounces.map_or_else(|| "any number of".to_owned(), |bounces| bounces.to_string());
+    let origin = format!(
+        "{}: W/m2 by lightvein {} trace, {spp} samples a sensor, {bounces} bounces, seed {}",
+        scene.name.replace(['\n', '\r'], " "),
+        env!("CARGO_PKG_VERSION"),
+        plan.settings.seed
+    );
     let mut table = Vec::new();
-    export::reference::write(&mut table, &scene, &field, &plan.settings)?;
+    export::reference::write_reference(&mut table, &origin, &scene.sensors, &field)?;
     match &common.output {
         Some(path) => {
             let mut folder = Folder::new(path)?;
@@ -191,7 +198,7 @@ fn traced_reference(
     cancel: &Cancel,
 ) -> Result<Vec<Option<Reference>>> {
     stages.begin("reference", 0);
-    let field: Field = trace::trace(scene, &model.rays, &model.sources, settings, stages, cancel)?;
+    let field = trace::trace(scene, &model.rays, &model.sources, settings, stages, cancel)?.field;
     stages.end();
     let row = |reading: &crate::light::Reading| Reference {
         irradiance_w_m2: reading.value_w_m2,

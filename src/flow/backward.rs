@@ -32,8 +32,10 @@ pub fn estimate(
 fn from_light<'a>(lit: &'a Lit<'a>) -> AtProbe<'a> {
     Box::new(move |probe, node| {
         let model = lit.model;
-        if model.sees_light(probe.position_m, lit.light) {
-            return arrival(lit, probe, 0.0, lit.light.position_m);
+        let straight_share = model.straight_share(probe.position_m, lit.light);
+        if straight_share > 0.0 {
+            let straight = arrival(lit, probe, 0.0, lit.light.position_m);
+            return Arrival { irradiance_w_m2: straight_share * straight.irradiance_w_m2, ..straight };
         }
         let farthest = farthest_seen(lit, probe, node);
         let end_m = model.node_m(farthest);

@@ -8,7 +8,7 @@ pub mod choose;
 pub mod faces;
 
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Sources, Status};
+use crate::light::{Aim, Emitter, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
@@ -111,9 +111,9 @@ impl Model {
     }
 
     fn places_of_lights(&self) -> Vec<Shining> {
-        let place = |(emitter, shines): (usize, &crate::light::Emitter)| {
-            let position_m = shines.position_m();
-            let place = self.place(position_m, shines.facing());
+        let place = |(emitter, shines): (usize, &Emitter)| {
+            let Aim { position_m, facing } = shines.aim();
+            let place = self.place(position_m, facing);
             let to_node_m = place.map_or(0.0, |node| f64::from(self.node_m(node).distance(position_m)));
             Shining { emitter, position_m, flux_w: shines.flux_w, place, to_node_m }
         };
@@ -131,10 +131,11 @@ impl Model {
         self.skeleton.graph.node_weight(node).map_or(Vec3::ZERO, |node| node.position_m)
     }
 
-    /// Whether a point sees the centre of a light, whose own body does not hide it.
-    pub fn sees_light(&self, from_m: Vec3, light: &Shining) -> bool {
+    /// The share of light that comes straight from the centre of a light to a point in the open: 0 where the point does not
+    /// see it, below 1 through glazing.
+    pub fn straight_share(&self, from_m: Vec3, light: &Shining) -> f64 {
         let emitter = self.sources.emitters.get(light.emitter);
-        emitter.is_some_and(|emitter| emitter.is_seen_from(&self.rays, from_m))
+        emitter.map_or(0.0, |emitter| f64::from(emitter.seen_from(&self.rays, from_m)))
     }
 
     /// Half a voxel, metres: nearer than that the skeleton tells no distances apart.

@@ -80,6 +80,6 @@ fn run(
 ) -> Result<Field, Cancelled> {
     match contestant.run {
         Run::Estimate(estimate) => estimate(model, probes, settings, progress, cancel),
-        Run::Trace => trace::trace(scene, &model.rays, &model.sources, settings, progress, cancel),
+        Run::Trace => Ok(trace::trace(scene, &model.rays, &model.sources, settings, progress, cancel)?.field),
     }
 }
