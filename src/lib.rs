@@ -4,3 +4,4 @@
 
 pub mod job;
 pub mod space;
+pub mod voxel;
