@@ -4,4 +4,7 @@
 
 pub mod bits;
 pub mod brick;
+pub mod cut;
 pub mod morphology;
+pub mod surface;
+pub mod touch;
