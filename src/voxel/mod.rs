@@ -5,6 +5,9 @@
 pub mod bits;
 pub mod brick;
 pub mod cut;
+pub mod flood;
+pub mod march;
+pub mod memory;
 pub mod morphology;
 pub mod surface;
 pub mod touch;
