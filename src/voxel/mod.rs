@@ -9,6 +9,7 @@ pub mod bits;
 pub mod brick;
 pub mod chessboard;
 pub mod cut;
+pub mod euclid;
 pub mod flood;
 pub mod levels;
 pub mod march;
