@@ -9,6 +9,8 @@ pub mod scene;
 
 pub mod rays;
 
+pub mod voxel;
+
 pub mod skeleton;
 
 pub mod light;
