@@ -4,4 +4,7 @@
 
 pub mod bits;
 pub mod brick;
+pub mod chessboard;
+pub mod levels;
 pub mod morphology;
+pub mod opening;
