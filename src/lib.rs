@@ -7,6 +7,8 @@ pub mod space;
 
 pub mod scene;
 
+pub mod rays;
+
 pub mod voxel;
 
 pub mod skeleton;

@@ -1,5 +1,7 @@
 //! Where does the void run?
 
+pub mod nearest;
+
 use crate::space::{Lattice, VoxelIndex};
 use glam::Vec3;
 use petgraph::graph::{NodeIndex, UnGraph};

@@ -1,0 +1,497 @@
+//! What does a ray hit?
+//!
+//! One compressed wide BVH (Ylitie, Karras & Laine 2017, crate `obvhs`) over the triangles of the mesh and the bodies of
+//! the lights: quads as two triangles, spheres as they are; point lights have no body. Triangles are tested by the
+//! watertight method of Woop, Benthin & Wald 2013, because the crate's own test leaks at shared edges, and a ray that
+//! slips between two walls carries the light of a bright room into a dark one. Both sides of everything are hit.
+//!
+//! Coordinates are `f32`. One constant for each scene, [`Rays::epsilon_m`], says how far a point found by a ray may be
+//! off its surface; whoever starts a ray on a surface lifts it off by that much along the normal. Features thinner than
+//! this (0.1 mm in a scene of 10 m) are not resolved. The build is serial and gives the same tree every time.
+
+use crate::scene::{Light, Scene};
+use glam::{DVec3, Vec3};
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use obvhs::ray::{Ray, RayHit};
+
+/// Share of the largest coordinate that points on surfaces are kept off them: 84 steps of `f32`. Intersections are good
+/// to a few steps.
+const EPSILON_SHARE: f32 = 1e-5;
+
+/// Share of the largest coordinate by which boxes are padded: rounding in the box test must not lose a ray that runs
+/// along the seam of two flat boxes.
+const PAD_SHARE: f32 = 2e-6;
+
+/// Distances are handed to the tree in units of 2^-20 m. The tree drops boxes that end nearer than 1e-4 of its units, which
+/// in metres would let rays that start 0.1 mm before a wall through it.
+const UNITS_PER_M: f32 = 1_048_576.0;
+
+/// What a ray can end on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// The mesh triangle of that number.
+    Triangle(u32),
+    /// The body of that light in [`Scene::lights`].
+    Light(usize),
+}
+
+/// Where a ray ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// How far along the ray, metres.
+    pub distance_m: f32,
+    /// Unit geometric normal of the surface's front side (of a sphere: outwards), whichever side was hit.
+    pub normal: Vec3,
+    /// Whether the ray came from the front.
+    pub front: bool,
+    /// What was hit.
+    pub surface: Surface,
+}
+
+impl Hit {
+    /// The unit normal on the side that the ray came from.
+    pub fn facing(&self) -> Vec3 {
+        if self.front { self.normal } else { -self.normal }
+    }
+}
+
+/// The surfaces of a scene, ready to be hit. Building takes about a second a million triangles.
+pub struct Rays {
+    tree: CwBvh,
+    /// In the order of the tree's leaves.
+    bodies: Vec<Body>,
+    /// What each body belongs to.
+    surfaces: Vec<Surface>,
+    /// Share of light that each body passes straight on.
+    transmittances: Vec<f32>,
+    epsilon_m: f32,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Body {
+    Triangle([Vec3; 3]),
+    Sphere { centre_m: Vec3, radius_m: f32 },
+}
+
+impl Rays {
+    /// Builds the tree over all triangles and light bodies of a scene; a scene without any is clear everywhere.
+    pub fn new(scene: &Scene) -> Self {
+        let mut parts: Vec<(Body, Surface, f32)> = Vec::with_capacity(scene.mesh.triangles.len());
+        for triangle in 0..scene.mesh.triangles.len() {
+            let material =
+                scene.mesh.material_of.get(triangle).and_then(|&number| scene.materials.get(number as usize));
+            let transmittance = material.map_or(0.0, |material| material.transmittance);
+            if let Some(corners_m) = scene.mesh.corners_m(triangle) {
+                parts.push((Body::Triangle(corners_m), Surface::Triangle(triangle as u32), transmittance));
+            }
+        }
+        for (number, light) in scene.lights.iter().enumerate() {
+            for body in bodies_of(light) {
+                parts.push((body, Surface::Light(number), 0.0));
+            }
+        }
+
+        let sensors = scene.sensors.iter().map(|sensor| sensor.position_m.abs().max_element());
+        let largest_m = parts.iter().map(|(body, ..)| body.largest_coordinate()).chain(sensors).fold(0.0, f32::max);
+        let boxes: Vec<Aabb> = parts.iter().map(|(body, ..)| body.padded_box(PAD_SHARE * largest_m)).collect();
+        let tree = tree_over(&boxes);
+
+        let leaves = tree.primitive_indices.iter().map(|&part| parts[part as usize]);
+        let (mut bodies, mut surfaces, mut transmittances) = (Vec::new(), Vec::new(), Vec::new());
+        for (body, surface, transmittance) in leaves {
+            bodies.push(body);
+            surfaces.push(surface);
+            transmittances.push(transmittance);
+        }
+        Self { tree, bodies, surfaces, transmittances, epsilon_m: EPSILON_SHARE * largest_m }
+    }
+
+    /// How far to lift a point off its surface, along the normal, before a ray starts there, metres: 1e-5 of the scene's
+    /// largest coordinate. It also bounds the error of a hit's position.
+    pub fn epsilon_m(&self) -> f32 {
+        self.epsilon_m
+    }
+
+    /// The first surface, glazing too, from `origin_m` along the unit vector `direction` within `max_m` (which may be
+    /// infinite).
+    pub fn closest(&self, origin_m: Vec3, direction: Vec3, max_m: f32) -> Option<Hit> {
+        let ray = Shear::new(origin_m, direction);
+        let mut found = RayHit::none();
+        let any = self.tree.ray_traverse(ray.in_tree(max_m), &mut found, |_, leaf| {
+            self.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray) * UNITS_PER_M)
+        });
+        let leaf = found.primitive_id as usize;
+        let (body, surface) = (self.bodies.get(leaf)?, self.surfaces.get(leaf)?);
+        let distance_m = found.t / UNITS_PER_M;
+        let normal = body.normal(origin_m + distance_m * direction);
+        any.then_some(Hit { distance_m, normal, front: normal.dot(direction) < 0.0, surface: *surface })
+    }
+
+    /// Whether nothing opaque lies between two points; glazing does not block. Both ends are pulled in by
+    /// [`Rays::epsilon_m`], so that the surfaces they lie on do not count.
+    pub fn clear(&self, from_m: Vec3, to_m: Vec3) -> bool {
+        self.transmitted(from_m, to_m) > 0.0
+    }
+
+    /// The share of light that passes from one point straight to another: 0 where something opaque lies between, else
+    /// the product of the transmittances of the glazing between. Ends as in [`Rays::clear`].
+    pub fn transmitted(&self, from_m: Vec3, to_m: Vec3) -> f32 {
+        let inwards_m = (to_m - from_m).normalize_or_zero() * self.epsilon_m;
+        if from_m.distance_squared(to_m) <= 4.0 * self.epsilon_m * self.epsilon_m {
+            return 1.0;
+        }
+        self.transmitted_past(from_m + inwards_m, to_m - inwards_m, |_| false)
+    }
+
+    /// As [`Rays::transmitted`], for ends that already stand clear of their surfaces and are not pulled in; surfaces for
+    /// which `ignore` holds let all light through (the body of the light that is looked at).
+    pub fn transmitted_past(&self, from_m: Vec3, to_m: Vec3, ignore: impl Fn(Surface) -> bool) -> f32 {
+        let length_m = from_m.distance(to_m);
+        if length_m <= 0.0 {
+            return 1.0;
+        }
+        let ray = Shear::new(from_m, (to_m - from_m) / length_m);
+        let mut share = 1.0;
+        let misses = self.tree.ray_traverse_miss(ray.in_tree(length_m), |_, leaf| {
+            let distance_m = self.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray));
+            if distance_m >= length_m || self.surfaces.get(leaf).is_some_and(|&surface| ignore(surface)) {
+                return f32::INFINITY;
+            }
+            match self.transmittances.get(leaf) {
+                Some(&transmittance) if transmittance > 0.0 => {
+                    share *= transmittance;
+                    f32::INFINITY
+                }
+                _ => distance_m * UNITS_PER_M,
+            }
+        });
+        if misses { share } else { 0.0 }
+    }
+}
+
+/// The bodies of a light; none for a point.
+fn bodies_of(light: &Light) -> Vec<Body> {
+    match *light {
+        Light::Point { .. } => Vec::new(),
+        Light::Sphere { centre_m, radius_m, .. } => vec![Body::Sphere { centre_m, radius_m }],
+        Light::Quad { corner_m, u_m, v_m, .. } => {
+            let [a, b, c, d] = [corner_m, corner_m + u_m, corner_m + u_m + v_m, corner_m + v_m];
+            vec![Body::Triangle([a, b, c]), Body::Triangle([a, c, d])]
+        }
+    }
+}
+
+/// The crate's medium quality. Its own helper would read the clock.
+fn tree_over(boxes: &[Aabb]) -> CwBvh {
+    if boxes.is_empty() {
+        return CwBvh::default();
+    }
+    let order = (0..boxes.len() as u32).collect();
+    let mut tree =
+        PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Medium, boxes, order, SortPrecision::U64, 3);
+    ReinsertionOptimizer::default().run(&mut tree, 0.05, None);
+    bvh2_to_cwbvh(&tree, 3, true, false)
+}
+
+impl Body {
+    fn largest_coordinate(&self) -> f32 {
+        match self {
+            Body::Triangle(corners) => corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max),
+            Body::Sphere { centre_m, radius_m } => centre_m.abs().max_element() + radius_m,
+        }
+    }
+
+    fn padded_box(&self, pad_m: f32) -> Aabb {
+        let (low, high) = match *self {
+            Body::Triangle([a, b, c]) => (a.min(b).min(c), a.max(b).max(c)),
+            Body::Sphere { centre_m, radius_m } => (centre_m - radius_m, centre_m + radius_m),
+        };
+        Aabb::new((low - pad_m).into(), (high + pad_m).into())
+    }
+
+    /// The normal of the front side at a point of the body.
+    fn normal(&self, at_m: Vec3) -> Vec3 {
+        match *self {
+            // In f64: slivers lose their normal in f32.
+            Body::Triangle(corners) => {
+                let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+                (b - a).cross(c - a).normalize_or(DVec3::Z).as_vec3()
+            }
+            Body::Sphere { centre_m, .. } => (at_m - centre_m).normalize_or(Vec3::Z),
+        }
+    }
+
+    /// How far along the ray the body is, metres; infinite where it is missed or behind.
+    fn distance_m(&self, ray: &Shear) -> f32 {
+        match *self {
+            Body::Triangle(corners) => ray.distance_to_triangle_m(corners),
+            Body::Sphere { centre_m, radius_m } => ray.distance_to_sphere_m(centre_m, radius_m),
+        }
+    }
+}
+
+/// A ray, prepared for the watertight test: the shear that turns its direction onto its own largest axis.
+struct Shear {
+    origin_m: Vec3,
+    direction: Vec3,
+    /// The axes, the direction's largest last; the first two swapped where that one points backwards.
+    axes: [usize; 3],
+    shear: Vec3,
+}
+
+impl Shear {
+    fn new(origin_m: Vec3, direction: Vec3) -> Self {
+        // Negative zeros would select the wrong side of a box.
+        let direction = direction + 0.0;
+        let size = direction.abs();
+        let last = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
+        let axes = [(last + 1) % 3, (last + 2) % 3, last];
+        let along = direction[last];
+        let shear = Vec3::new(direction[axes[0]] / along, direction[axes[1]] / along, 1.0 / along);
+        Self { origin_m, direction, axes, shear }
+    }
+
+    /// The same ray in the tree's units.
+    fn in_tree(&self, max_m: f32) -> Ray {
+        /// Stands for the inverse of zero: large, and finite when multiplied by any coordinate.
+        const INVERSE_OF_ZERO: f32 = 1e20;
+        let inverse = |along: f32| {
+            if along.abs() < 1.0 / INVERSE_OF_ZERO { INVERSE_OF_ZERO.copysign(along) } else { 1.0 / along }
+        };
+        let [x, y, z] = self.direction.to_array().map(inverse);
+        Ray {
+            origin: self.origin_m.into(),
+            direction: self.direction.into(),
+            inv_direction: (Vec3::new(x, y, z) * UNITS_PER_M).into(),
+            tmin: 0.0,
+            tmax: max_m * UNITS_PER_M,
+        }
+    }
+
+    /// Woop, Benthin & Wald 2013: seen along the ray the origin lies in the triangle when the three edge functions have
+    /// one sign. Two triangles compute the function of a shared edge from the same numbers, so no ray passes between.
+    fn distance_to_triangle_m(&self, corners_m: [Vec3; 3]) -> f32 {
+        let [first, second, last] = self.axes;
+        let [a, b, c] = corners_m.map(|corner_m| {
+            let local = corner_m - self.origin_m;
+            let along = local[last];
+            Vec3::new(local[first] - self.shear.x * along, local[second] - self.shear.y * along, self.shear.z * along)
+        });
+        let mut u = c.x * b.y - c.y * b.x;
+        let mut v = a.x * c.y - a.y * c.x;
+        let mut w = b.x * a.y - b.y * a.x;
+
+        // On an edge in f32: decide in f64, where these products are exact.
+        if u == 0.0 || v == 0.0 || w == 0.0 {
+            let edge = |p: Vec3, q: Vec3| (f64::from(p.x) * f64::from(q.y) - f64::from(p.y) * f64::from(q.x)) as f32;
+            (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        }
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return f32::INFINITY;
+        }
+        let area = u + v + w;
+        let distance_m = (u * a.z + v * b.z + w * c.z) / area;
+        if area != 0.0 && distance_m > 0.0 { distance_m } else { f32::INFINITY }
+    }
+
+    /// The nearer crossing in front of the origin; from inside, the far one.
+    fn distance_to_sphere_m(&self, centre_m: Vec3, radius_m: f32) -> f32 {
+        // In f64: far from a small sphere the discriminant cancels in f32.
+        let (origin, direction) = (self.origin_m.as_dvec3(), self.direction.as_dvec3());
+        let (to_centre, radius) = (centre_m.as_dvec3() - origin, f64::from(radius_m));
+        let along = to_centre.dot(direction);
+        let aside = to_centre - along * direction;
+        let half_chord_squared = radius * radius - aside.length_squared();
+        if half_chord_squared < 0.0 {
+            return f32::INFINITY;
+        }
+        let half_chord = half_chord_squared.sqrt();
+        let crossings = [along - half_chord, along + half_chord];
+        crossings.into_iter().find(|&distance| distance > 0.0).map_or(f32::INFINITY, |distance| distance as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, Mesh};
+    use proptest::prelude::*;
+
+    /// An octahedron, each face cut into `cuts * cuts`, pushed out to a bumpy closed surface about the origin.
+    fn ball(cuts: i32, radius_m: f32, bump: f32) -> Mesh {
+        let mut mesh = Mesh::default();
+        let corner = |axis: usize, sign: f32| {
+            let mut corner = Vec3::ZERO;
+            corner[axis] = sign;
+            corner
+        };
+        for face in 0..8 {
+            let sign = |axis: usize| if face >> axis & 1 == 0 { 1.0 } else { -1.0 };
+            let [a, b, c] = [0, 1, 2].map(|axis| corner(axis, sign(axis)));
+            let at = |i: i32, j: i32| {
+                // From integers alone, so that neighbouring faces make the same corner bit by bit.
+                let flat = a * (cuts - i - j) as f32 + b * i as f32 + c * j as f32;
+                let unit = flat.normalize();
+                unit * radius_m * (1.0 + bump * (17.0 * unit.x + 5.0 * unit.y * unit.z).sin())
+            };
+            for i in 0..cuts {
+                for j in 0..cuts - i {
+                    push(&mut mesh, [at(i, j), at(i + 1, j), at(i, j + 1)]);
+                    if i + j + 1 < cuts {
+                        push(&mut mesh, [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                    }
+                }
+            }
+        }
+        mesh
+    }
+
+    fn push(mesh: &mut Mesh, corners_m: [Vec3; 3]) {
+        let first = mesh.positions_m.len() as u32;
+        mesh.positions_m.extend(corners_m);
+        mesh.triangles.push([first, first + 1, first + 2]);
+        mesh.material_of.push(0);
+    }
+
+    fn grey(transmittance: f32) -> Material {
+        Material { name: String::new(), reflectance: 0.5, transmittance, emission_w_m2_sr: 0.0 }
+    }
+
+    fn scene_of(mesh: Mesh, lights: Vec<Light>) -> Scene {
+        Scene { mesh, lights, materials: vec![grey(0.0)], ..Scene::default() }
+    }
+
+    /// A square of side 2 m at height `z`, seen from above at its front.
+    fn square(mesh: &mut Mesh, z: f32, material: u32) {
+        let [a, b, c, d] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, z));
+        push(mesh, [a, b, c]);
+        push(mesh, [a, c, d]);
+        let count = mesh.material_of.len();
+        mesh.material_of[count - 2..].fill(material);
+    }
+
+    #[test]
+    fn nothing_leaves_a_closed_mesh_through_corners_edges_or_faces() {
+        for (cuts, shift) in [(1, 0.0), (9, 0.0), (9, 1000.0)] {
+            let mut mesh = ball(cuts, 3.0, 0.05);
+            let centre = Vec3::new(shift, 0.3 * shift, -shift);
+            mesh.positions_m.iter_mut().for_each(|position| *position += centre);
+            let scene = scene_of(mesh, Vec::new());
+            let rays = Rays::new(&scene);
+            for origin in [Vec3::ZERO, Vec3::new(0.3, -0.7, 0.2), Vec3::new(0.0, 0.5, 0.0)].map(|at| centre + at) {
+                for triangle in 0..scene.mesh.triangles.len() {
+                    let [a, b, c] = scene.mesh.corners_m(triangle).expect("the triangle exists");
+                    for target in [a, b, c, (a + b) / 2.0, (2.0 * a + c) / 3.0, (a + b + c) / 3.0] {
+                        let direction = (target - origin).normalize();
+                        let hit = rays.closest(origin, direction, f32::INFINITY);
+                        let distance = hit.unwrap_or_else(|| panic!("{cuts} {target} from {origin}")).distance_m;
+                        assert!((distance - origin.distance(target)).abs() < 0.3, "{distance}");
+                        assert!(!rays.clear(origin, origin + 10.0 * direction));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_ray_that_starts_just_before_a_wall_hits_it() {
+        let mut mesh = Mesh::default();
+        square(&mut mesh, 0.0, 0);
+        let rays = Rays::new(&scene_of(mesh, Vec::new()));
+        for gap_m in [1e-3, 1e-4, 1e-5, 1e-6] {
+            for (x, y) in [(0.0, 0.0), (0.3, 0.3), (0.1, -0.7)] {
+                let hit = rays.closest(Vec3::new(x, y, gap_m), Vec3::NEG_Z, 10.0).expect("the wall");
+                assert!((hit.distance_m - gap_m).abs() < 1e-7);
+                assert!(hit.front && hit.normal == Vec3::Z && hit.facing() == Vec3::Z);
+                let hit = rays.closest(Vec3::new(x, y, -gap_m), Vec3::Z, 10.0).expect("the wall");
+                assert!(!hit.front && hit.normal == Vec3::Z && hit.facing() == Vec3::NEG_Z);
+            }
+        }
+        assert_eq!(rays.closest(Vec3::new(0.0, 0.0, 1.0), Vec3::NEG_Z, 0.5), None);
+    }
+
+    #[test]
+    fn glazing_weakens_and_walls_block() {
+        let mut mesh = Mesh::default();
+        square(&mut mesh, 1.0, 1);
+        square(&mut mesh, 2.0, 2);
+        square(&mut mesh, 3.0, 0);
+        let scene = Scene { materials: vec![grey(0.0), grey(0.5), grey(0.8)], ..scene_of(mesh, Vec::new()) };
+        let rays = Rays::new(&scene);
+        let at = |z: f32| Vec3::new(0.2, 0.1, z);
+        assert_eq!(rays.transmitted(at(0.0), at(0.9)), 1.0);
+        assert_eq!(rays.transmitted(at(0.0), at(1.5)), 0.5);
+        assert!((rays.transmitted(at(0.0), at(2.5)) - 0.4).abs() < 1e-6);
+        assert_eq!(rays.transmitted(at(0.0), at(3.5)), 0.0);
+        assert!(rays.clear(at(2.5), at(0.0)) && !rays.clear(at(3.5), at(2.5)));
+        // Ends on the surfaces themselves do not count.
+        assert_eq!(rays.transmitted(at(1.0), at(3.0)), 0.8);
+        assert_eq!(rays.transmitted_past(at(0.0), at(3.5), |surface| surface == Surface::Triangle(4)), 0.4);
+    }
+
+    #[test]
+    fn lights_are_opaque_bodies() {
+        let lights = vec![
+            Light::Point { position_m: Vec3::new(0.0, 0.0, 4.0), flux_w: 1.0 },
+            Light::Sphere { centre_m: Vec3::new(0.0, 0.0, 2.0), radius_m: 0.5, flux_w: 1.0 },
+            Light::Quad { corner_m: Vec3::splat(-5.0), u_m: Vec3::Y, v_m: Vec3::X, flux_w: 1.0 },
+        ];
+        let rays = Rays::new(&scene_of(Mesh::default(), lights));
+        let hit = rays.closest(Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z, 100.0).expect("the sphere");
+        assert_eq!((hit.surface, hit.distance_m, hit.normal, hit.front), (Surface::Light(1), 2.5, Vec3::Z, true));
+        let hit = rays.closest(Vec3::new(0.0, 0.0, 2.0), Vec3::X, 100.0).expect("the sphere from inside");
+        assert_eq!((hit.distance_m, hit.front), (0.5, false));
+        let hit = rays.closest(Vec3::new(-4.5, -4.7, 0.0), Vec3::NEG_Z, 100.0).expect("the quad");
+        assert_eq!((hit.surface, hit.normal, hit.front), (Surface::Light(2), Vec3::NEG_Z, false));
+        assert!(!rays.clear(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO));
+    }
+
+    #[test]
+    fn an_empty_scene_is_clear() {
+        let rays = Rays::new(&Scene::default());
+        assert_eq!(rays.closest(Vec3::ZERO, Vec3::X, f32::INFINITY), None);
+        assert!(rays.clear(Vec3::ZERO, Vec3::ONE));
+    }
+
+    #[test]
+    fn many_triangles_in_one_place_are_not_lost() {
+        let mut mesh = Mesh::default();
+        for copy in 0..20_000 {
+            square(&mut mesh, if copy == 0 { 0.5 } else { 0.0 }, 0);
+        }
+        let rays = Rays::new(&scene_of(mesh, Vec::new()));
+        assert_eq!(rays.closest(Vec3::new(0.1, 0.2, -1.0), Vec3::Z, 10.0).map(|hit| hit.distance_m), Some(1.0));
+        assert_eq!(rays.closest(Vec3::new(0.1, 0.2, 1.0), Vec3::NEG_Z, 10.0).map(|hit| hit.distance_m), Some(0.5));
+    }
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        [-4.0f32..4.0, -4.0f32..4.0, -4.0f32..4.0].prop_map(Vec3::from_array)
+    }
+
+    proptest! {
+        #[test]
+        fn the_tree_finds_what_every_triangle_in_turn_finds(origin in point(), target in point()) {
+            let mesh = ball(6, 3.0, 0.2);
+            let scene = scene_of(mesh, Vec::new());
+            let rays = Rays::new(&scene);
+            let direction = (target - origin).normalize_or(Vec3::X);
+            let ray = Shear::new(origin, direction);
+            let each = rays.bodies.iter().map(|body| body.distance_m(&ray)).fold(f32::INFINITY, f32::min);
+            let found = rays.closest(origin, direction, f32::INFINITY).map_or(f32::INFINITY, |hit| hit.distance_m);
+            prop_assert!(found == each || (found - each).abs() < 1e-5, "{} {}", found, each);
+            let length = origin.distance(target);
+            let far_from_the_end = (each - length).abs() > 1e-3 && each > 1e-3;
+            prop_assert!(!far_from_the_end || rays.clear(origin, target) == (each > length));
+        }
+    }
+}
