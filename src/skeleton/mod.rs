@@ -1,6 +1,9 @@
 //! Where does the void run?
 
+mod links;
+mod matter;
 pub mod nearest;
+pub mod sections;
 
 use crate::space::{Lattice, VoxelIndex};
 use glam::Vec3;
