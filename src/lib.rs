@@ -15,6 +15,15 @@ pub mod skeleton;
 
 pub mod light;
 
+pub mod model;
+
+pub mod flow;
+
 pub mod trace;
 
+pub mod study;
+
 pub mod export;
+
+#[cfg(feature = "cli")]
+pub mod cli;

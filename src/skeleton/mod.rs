@@ -1,5 +1,10 @@
 //! Where does the void run?
 
+mod links;
+mod matter;
+pub mod nearest;
+pub mod sections;
+
 use crate::space::{Lattice, VoxelIndex};
 use glam::Vec3;
 use petgraph::graph::{NodeIndex, UnGraph};
