@@ -6,7 +6,7 @@
 use lightvein::flow::estimator;
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::Settings;
-use lightvein::model::Model;
+use lightvein::model::{Model, places_of_patches};
 use lightvein::rays::Rays;
 use lightvein::scene::{Method, Scene};
 use lightvein::skeleton::Skeleton;
@@ -58,9 +58,9 @@ fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error>> {
     let rays = Arc::new(Rays::new(scene));
     lap();
     let sources = lightvein::light::Sources::of(scene);
-    let voxels = voxelise(scene, &rays, &sources, VOXEL_M, u64::MAX, &progress, &cancel)?;
+    let voxels = voxelise(scene, &rays, &places_of_patches(scene, &sources), VOXEL_M, u64::MAX, &progress, &cancel)?;
     lap();
-    let skeleton = Skeleton::build(&voxels, &rays, &progress, &cancel)?;
+    let skeleton = Skeleton::build(voxels.lattice, &voxels.void, &rays, &progress, &cancel)?;
     lap();
     let model = Model::of(rays, sources, voxels, skeleton);
     let probes = model.probes_at_sensors(scene);

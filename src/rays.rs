@@ -87,6 +87,12 @@ enum Body {
     Sphere { centre_m: Vec3, radius_m: f32 },
 }
 
+impl std::fmt::Debug for Rays {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.debug_struct("Rays").field("bodies", &self.bodies.len()).field("epsilon_m", &self.epsilon_m).finish()
+    }
+}
+
 impl Rays {
     /// Builds the tree over all triangles and light bodies of a scene; a scene without any is clear everywhere.
     pub fn new(scene: &Scene) -> Self {

@@ -162,7 +162,7 @@ fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> 
             chosen.model
         }
     };
-    let model = if scene.is_bare { light_bare_mesh(scene, model) } else { model };
+    let model = if scene.bare { light_bare_mesh(scene, model) } else { model };
 
     let mut warnings = scene.warnings.clone();
     warnings.extend(model.voxels.warnings.iter().cloned());

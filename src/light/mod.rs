@@ -82,6 +82,19 @@ pub enum Status {
     Outside,
 }
 
+impl Status {
+    /// Its name in tables and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Status::Ok => "ok",
+            Status::Dark => "dark",
+            Status::InSolid => "in_solid",
+            Status::Unreached => "unreached",
+            Status::Outside => "outside",
+        }
+    }
+}
+
 /// The answer at one sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {

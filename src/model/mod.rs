@@ -8,13 +8,16 @@ pub mod choose;
 pub mod faces;
 
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Aim, Emitter, Sources, Status};
+use crate::light::{Aim, Emitter, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
+use crate::space::VoxelIndex;
+use crate::voxel::seeds::{self, Lost, Place};
 use crate::voxel::{VoxelError, Voxels, voxelise};
 use glam::Vec3;
 use petgraph::graph::NodeIndex;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// What was modelled of a scene.
@@ -86,11 +89,12 @@ impl Model {
         let sources = Sources::of(scene);
 
         progress.begin("voxels", 0);
-        let voxels = voxelise(scene, &rays, &sources, voxel_m, max_bytes, progress, cancel)?;
+        let patches = places_of_patches(scene, &sources);
+        let voxels = voxelise(scene, &rays, &patches, voxel_m, max_bytes, progress, cancel)?;
         progress.end();
 
         progress.begin("skeleton", 0);
-        let skeleton = Skeleton::build(&voxels, &rays, progress, cancel)?;
+        let skeleton = Skeleton::build(voxels.lattice, &voxels.void, &rays, progress, cancel)?;
         progress.end();
 
         Ok(Self::of(rays, sources, voxels, skeleton))
@@ -111,18 +115,28 @@ impl Model {
     }
 
     fn places_of_lights(&self) -> Vec<Shining> {
-        let place = |(emitter, shines): (usize, &Emitter)| {
+        let shining = |(emitter, shines): (usize, &Emitter)| {
             let Aim { position_m, facing } = shines.aim();
-            let place = self.place(position_m, facing);
+            let seed = self.voxels.seeds.lights.get(emitter).copied();
+            let place = match seed {
+                Some(seed) => seed.map_err(status).and_then(|seed| self.node_of(seed.voxel)),
+                None => self.place(position_m, facing),
+            };
             let to_node_m = place.map_or(0.0, |node| f64::from(self.node_m(node).distance(position_m)));
             Shining { emitter, position_m, flux_w: shines.flux_w, place, to_node_m }
         };
-        self.sources.emitters.iter().enumerate().map(place).collect()
+        self.sources.emitters.iter().enumerate().map(shining).collect()
     }
 
     /// The node that a point, looking along `facing` if it lies on a wall, has along the void; or why it has none.
-    pub fn place(&self, position_m: Vec3, facing: Option<Vec3>) -> Result<NodeIndex, Status> {
-        let voxel = self.voxels.void_voxel(&self.rays, position_m, facing)?;
+    pub fn place(&self, point_m: Vec3, facing: Option<Vec3>) -> Result<NodeIndex, Status> {
+        let Voxels { lattice, solid, void, .. } = &self.voxels;
+        let place = Place { point_m, normal: facing };
+        let voxel = seeds::resolved(&place, lattice, solid, void, &self.rays).map_err(status)?;
+        self.node_of(voxel)
+    }
+
+    fn node_of(&self, voxel: VoxelIndex) -> Result<NodeIndex, Status> {
         self.skeleton.nearest_node(voxel).ok_or(Status::Unreached)
     }
 
@@ -145,8 +159,17 @@ impl Model {
 
     /// The scene's sensors as probes, in their order.
     pub fn probes_at_sensors(&self, scene: &Scene) -> Vec<Probe> {
-        let probe = |sensor: &Sensor| self.probe(sensor.position_m, sensor.normal);
-        scene.sensors.iter().map(probe).collect()
+        let seeds = &self.voxels.seeds.sensors;
+        let probe = |(number, sensor): (usize, &Sensor)| match seeds.get(number) {
+            Some(seed) => Probe {
+                position_m: sensor.position_m,
+                normal: sensor.normal,
+                place: seed.map_err(status).and_then(|seed| self.node_of(seed.voxel)),
+            },
+            // Sensors that came after the voxels.
+            None => self.probe(sensor.position_m, sensor.normal),
+        };
+        scene.sensors.par_iter().enumerate().map(probe).collect()
     }
 
     /// A probe anywhere.
@@ -160,4 +183,21 @@ impl Model {
         let probe = |node| Probe { position_m: self.node_m(node), normal: None, place: Ok(node) };
         graph.node_indices().map(probe).collect()
     }
+}
+
+/// What became of a light or sensor that stands in no void.
+fn status(lost: Lost) -> Status {
+    match lost {
+        Lost::InSolid => Status::InSolid,
+        Lost::Outside => Status::Outside,
+    }
+}
+
+/// Where the patches of emissive faces shine from, in the order of the sources.
+pub fn places_of_patches(scene: &Scene, sources: &Sources) -> Vec<Place> {
+    let place = |emitter: &Emitter| match &emitter.shape {
+        Shape::Patch { triangles, centroid_m, .. } => Place::of_patch(&scene.mesh, triangles, *centroid_m),
+        Shape::Light(..) => None,
+    };
+    sources.emitters.iter().filter_map(place).collect()
 }

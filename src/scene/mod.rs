@@ -197,6 +197,12 @@ impl Method {
     }
 }
 
+impl std::fmt::Display for Method {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str(self.name())
+    }
+}
+
 /// Where on earth the scene stands, and for which period it is asked.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Site {
