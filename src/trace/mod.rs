@@ -1,7 +1,7 @@
 //! How much light is there truly? An unidirectional path tracer, plain, slow and trusted.
 //!
 //! Method: paths from the sensor with next-event estimation at every vertex (Kajiya 1986; Shirley, Wang & Zimmerman
-//! 1996), Lambertian surfaces reflecting on both sides, thin glazing, Russian roulette after eight surfaces, any number of
+//! 1996), Lambertian surfaces reflecting on both sides, thin glazing, Russian roulette after four surfaces, any number of
 //! reflections. Every sample is independent, so the standard error comes from their variance.
 //!
 //! Limits: no light passes that needs a hit on a lamp by chance (there are no mirrors, so nothing is lost). Where a few
