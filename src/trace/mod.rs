@@ -1,7 +1,7 @@
 //! How much light is there truly? An unidirectional path tracer, plain, slow and trusted.
 //!
 //! Method: paths from the sensor with next-event estimation at every vertex (Kajiya 1986; Shirley, Wang & Zimmerman
-//! 1996), Lambertian surfaces reflecting on both sides, thin glazing, Russian roulette after eight surfaces, any number of
+//! 1996), Lambertian surfaces reflecting on both sides, thin glazing, Russian roulette after four surfaces, any number of
 //! reflections. Every sample is independent, so the standard error comes from their variance.
 //!
 //! Limits: no light passes that needs a hit on a lamp by chance (there are no mirrors, so nothing is lost). Where a few
@@ -29,6 +29,9 @@ const BLOCKS_HELD: u64 = 65_536;
 
 /// A largest sample above this share of the sum makes the standard error worthless.
 const LARGEST_TRUSTED_SHARE: f64 = 0.05;
+
+/// Sensors that a warning names.
+const MOST_NAMED: usize = 5;
 
 /// Path-traced readings.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -167,24 +170,22 @@ impl Standing {
     }
 }
 
+/// A sentence for each kind of trouble, with the sensors that are in it.
 fn warnings(scene: &Scene, standings: &[Standing], top_share: &[f64]) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for ((sensor, standing), share) in scene.sensors.iter().zip(standings).zip(top_share) {
-        match standing {
-            Standing::InLight => warnings.push(format!("sensor {}: lies inside a sphere light", sensor.id)),
-            Standing::OnPoint => warnings.push(format!(
-                "sensor {}: lies on a point light, whose direct light is infinite there and left out",
-                sensor.id
-            )),
-            Standing::Free => {}
-        }
-        if *share > LARGEST_TRUSTED_SHARE {
-            let percent = 100.0 * share;
-            warnings.push(format!(
-                "sensor {}: one sample is {percent:.0}% of the sum; its standard error is not to be trusted",
-                sensor.id
-            ));
-        }
-    }
-    warnings
+    let named = |held: &dyn Fn(usize) -> bool, says: &str| {
+        let ids: Vec<&str> =
+            scene.sensors.iter().enumerate().filter(|(at, _)| held(*at)).map(|(_, it)| &*it.id).collect();
+        let shown = ids[..ids.len().min(MOST_NAMED)].join(", ");
+        let more = if ids.len() > MOST_NAMED { format!(" and {} more", ids.len() - MOST_NAMED) } else { String::new() };
+        (!ids.is_empty()).then(|| format!("{says}: sensors {shown}{more}"))
+    };
+    let kinds = [
+        named(&|at| standings[at] == Standing::InLight, "inside a sphere light"),
+        named(&|at| standings[at] == Standing::OnPoint, "on a point light, whose infinite direct light is left out"),
+        named(
+            &|at| top_share[at] > LARGEST_TRUSTED_SHARE,
+            "one sample is over 5% of the sum, so that the standard error is not to be trusted",
+        ),
+    ];
+    kinds.into_iter().flatten().collect()
 }

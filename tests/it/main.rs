@@ -2,3 +2,9 @@
 
 /// Scene files, meshes, sensors and references as they should be.
 mod scene_files;
+
+/// The path tracer against closed forms.
+mod physics;
+
+/// The path tracer against an independent renderer.
+mod references;
