@@ -139,10 +139,7 @@ impl Columns {
                 continue;
             }
             let length = self.column[at..].iter().position(|&value| value == 0).unwrap_or(end - at);
-            let walls = [
-                at > 0 || self.beyond == Beyond::Solid,
-                at + length < end || self.beyond == Beyond::Solid,
-            ];
+            let walls = [at > 0 || self.beyond == Beyond::Solid, at + length < end || self.beyond == Beyond::Solid];
             envelope(&mut self.column[at..at + length], walls, &mut self.hull);
             at += length;
         }
@@ -161,7 +158,8 @@ fn envelope(run: &mut [u32], walls: [bool; 2], hull: &mut Vec<Parabola>) {
     for (at, value) in own.chain(walls[1].then_some((after, 0))) {
         let new = Parabola { at, lifted: value + at * at };
         while let [.., before, last] = hull[..] {
-            let turns = (last.lifted - before.lifted) * (new.at - last.at) < (new.lifted - last.lifted) * (last.at - before.at);
+            let turns =
+                (last.lifted - before.lifted) * (new.at - last.at) < (new.lifted - last.lifted) * (last.at - before.at);
             if turns {
                 break;
             }
@@ -231,7 +229,8 @@ mod tests {
 
     #[test]
     fn the_same_on_one_thread_and_many() {
-        let bytes: Vec<u8> = (0..64_000_u64).map(|i| u8::from(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58 == 0)).collect();
+        let bytes: Vec<u8> =
+            (0..64_000_u64).map(|i| u8::from(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58 == 0)).collect();
         let solid = BitGrid::from_bytes([40, 40, 40], &bytes);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -248,6 +247,6 @@ mod tests {
         let squared = squared_distances(&solid, Beyond::Nothing);
         assert_eq!(squared[32_767], 32_767 * 32_767);
         assert_eq!(squared[2 * 32_768 - 1], 32_767 * 32_767 + 1);
-        assert_eq!(squared_distances(&BitGrid::new([0, 3, 3]), Beyond::Solid), []);
+        assert!(squared_distances(&BitGrid::new([0, 3, 3]), Beyond::Solid).is_empty());
     }
 }

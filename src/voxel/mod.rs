@@ -8,6 +8,7 @@
 pub mod bits;
 pub mod brick;
 pub mod chessboard;
+pub mod closed;
 pub mod cut;
 pub mod euclid;
 pub mod flood;
@@ -16,6 +17,7 @@ pub mod march;
 pub mod memory;
 pub mod morphology;
 pub mod opening;
+pub mod parts;
 pub mod seeds;
 pub mod surface;
 #[cfg(test)]
@@ -25,13 +27,13 @@ pub mod touch;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::rays::Rays;
 use crate::scene::Scene;
-use crate::space::{Lattice, VoxelIndex};
+use crate::space::Lattice;
 use bits::BitGrid;
-use flood::Flood;
+use closed::ClosedOpening;
 use memory::Memory;
 use morphology::Neighbours;
-use rayon::prelude::*;
-use seeds::{Lost, Place, Seed, Seeds};
+use parts::VoidPart;
+use seeds::{Ground, Place, Seed, Seeds};
 use surface::SurfaceVoxels;
 
 /// A scene on a grid of voxels.
@@ -50,21 +52,10 @@ pub struct Voxels {
     pub voids: Vec<VoidPart>,
     /// Where lights and sensors stand.
     pub seeds: Seeds,
+    /// Openings beside the void that light passes and the grid closes, the largest first.
+    pub closed: Vec<ClosedOpening>,
     /// What a reader should know, a sentence each.
     pub warnings: Vec<String>,
-}
-
-/// A void: voxels that 26-connected steps join.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct VoidPart {
-    /// How many voxels it has.
-    pub voxels: usize,
-    /// Whether it reaches the outermost layer of the grid, which then bounds it.
-    pub leaks: bool,
-    /// The lights and emissive patches in it, as numbered in [`Seeds::lights`].
-    pub lights: Vec<usize>,
-    /// The sensors in it.
-    pub sensors: Vec<usize>,
 }
 
 /// Why a scene could not be voxelised.
@@ -104,7 +95,7 @@ pub enum VoxelError {
 }
 
 /// Voxelises a scene with voxels of edge `voxel_m` (metres) and floods its void from the lights of the scene, `patches` (one
-/// place for each patch of emissive faces: [`Place::of_patch`]) and the sensors. The stages "voxels" and "flood" are
+/// place for each patch of emissive faces: [`Place::of_patch`]) and the sensors. The stages "voxels", "flood" and "openings" are
 /// reported to `progress`. The same bits for any number of threads.
 ///
 /// # Errors
@@ -125,110 +116,17 @@ pub fn voxelise(
     progress.begin("flood", 0);
     let lights: Vec<Place> = scene.lights.iter().map(Place::of_light).chain(patches.iter().copied()).collect();
     let sensors: Vec<Place> = scene.sensors.iter().map(Place::of_sensor).collect();
-    let resolve = |places: &[Place], preferred: &BitGrid| {
-        let voxels = places.par_iter().map(|place| {
-            cancel.check()?;
-            Ok(seeds::resolved(place, &lattice, &solid, preferred, rays))
-        });
-        voxels.collect::<Result<Vec<Found>, Cancelled>>()
-    };
-    let lights = resolve(&lights, &BitGrid::new(lattice.size))?;
-    let mut lit = Flood::new(&solid);
-    lights.iter().flatten().for_each(|&voxel| _ = lit.flood(voxel));
-    let sensors = resolve(&sensors, lit.void())?;
-    cancel.check()?;
-    let (void, voids, seeds) = parted(&solid, &lights, &sensors);
+    let ground = Ground { lattice: &lattice, solid: &solid, rays };
+    let (void, voids, seeds) = parts::parted(&ground, &lights, &sensors, cancel)?;
     progress.end();
 
-    let warnings = warnings(&voids, &seeds);
-    Ok(Voxels { lattice, solid, void, surface, voids, seeds, warnings })
-}
+    progress.begin("openings", 0);
+    let closed = closed::closed_openings(&lattice, &solid, &void, rays, cancel)?;
+    progress.end();
 
-/// The voxel of a light or sensor.
-type Found = Result<VoxelIndex, Lost>;
-
-/// Floods the voids of all seeds, lights first, and says which seed stands in which. Without seeds the largest void.
-fn parted(solid: &BitGrid, lights: &[Found], sensors: &[Found]) -> (BitGrid, Vec<VoidPart>, Seeds) {
-    let mut flood = Flood::new(solid);
-    let mut voids = Vec::new();
-    if lights.is_empty() && sensors.is_empty() {
-        let largest = flood::largest_void(solid).and_then(|largest| flood.flood(largest.from));
-        voids.extend(largest.map(VoidPart::new));
-    }
-
-    let all: Vec<Found> = lights.iter().chain(sensors).copied().collect();
-    let mut part_of = vec![None; all.len()];
-    for first in 0..all.len() {
-        let Some(reached) = all[first].ok().and_then(|voxel| flood.flood(voxel)) else { continue };
-        let mut void = VoidPart::new(reached);
-        for (number, voxel) in all.iter().enumerate().skip(first) {
-            if part_of[number].is_none() && voxel.is_ok_and(|voxel| flood.void().get(voxel)) {
-                part_of[number] = Some(voids.len());
-                match number.checked_sub(lights.len()) {
-                    None => void.lights.push(number),
-                    Some(sensor) => void.sensors.push(sensor),
-                }
-            }
-        }
-        voids.push(void);
-    }
-
-    let seeds = all.iter().zip(part_of).map(|(found, part)| {
-        let voxel = (*found)?;
-        part.map(|part| Seed { voxel, part }).ok_or(Lost::InSolid)
-    });
-    let mut lights_then_sensors: Vec<Result<Seed, Lost>> = seeds.collect();
-    let sensors = lights_then_sensors.split_off(lights.len());
-    (flood.into_void(), voids, Seeds { lights: lights_then_sensors, sensors })
-}
-
-/// What went wrong in a way that a reader should know.
-fn warnings(voids: &[VoidPart], seeds: &Seeds) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for (number, part) in voids.iter().enumerate().filter(|(_, part)| part.leaks) {
-        warnings.push(format!(
-            "void {number} ({} voxels) leaks: it reaches the box around the mesh, which bounds it",
-            part.voxels
-        ));
-    }
-    let lit = voids.iter().filter(|part| !part.lights.is_empty()).count();
-    if lit > 1 {
-        warnings.push(format!("the lights stand in {lit} separate voids; light does not pass between them"));
-    }
-    let dark: usize = voids.iter().filter(|part| part.lights.is_empty()).map(|part| part.sensors.len()).sum();
-    if dark > 0 && !seeds.lights.is_empty() {
-        warnings.push(format!("{dark} sensors stand in voids that no light reaches"));
-    }
-    for (what, found) in [("lights", &seeds.lights), ("sensors", &seeds.sensors)] {
-        for (why, told) in [
-            (Lost::InSolid, "lie inside matter and face no void"),
-            (Lost::Outside, "lie outside the box around the mesh"),
-        ] {
-            let lost: Vec<String> = found
-                .iter()
-                .enumerate()
-                .filter(|(_, seed)| **seed == Err(why))
-                .map(|(number, _)| number.to_string())
-                .collect();
-            if !lost.is_empty() {
-                warnings.push(format!("{} {what} {told}: number {}", lost.len(), shortened(&lost)));
-            }
-        }
-    }
-    warnings
-}
-
-/// The first few of a list, and that there are more.
-fn shortened(numbers: &[String]) -> String {
-    const FIRST: usize = 8;
-    let more = if numbers.len() > FIRST { ", ..." } else { "" };
-    numbers[..numbers.len().min(FIRST)].join(", ") + more
-}
-
-impl VoidPart {
-    fn new(reached: flood::Reached) -> Self {
-        Self { voxels: reached.voxels, leaks: reached.leaks, lights: Vec::new(), sensors: Vec::new() }
-    }
+    let mut warnings = parts::warnings(&voids, &seeds);
+    warnings.extend(closed::warning(&closed, scene, voxel_m));
+    Ok(Voxels { lattice, solid, void, surface, voids, seeds, closed, warnings })
 }
 
 impl Voxels {
@@ -254,20 +152,14 @@ impl Voxels {
         ensure(self.surface.patches().len() == self.solid.count(), "each solid voxel has a patch")?;
         let voxels: usize = self.voids.iter().map(|part| part.voxels).sum();
         ensure(voxels == self.void.count(), "the voids make up the void")?;
-        let seeds = seeds_found(&self.seeds.lights).chain(seeds_found(&self.seeds.sensors));
-        let mut seeds = seeds.map(|(_, seed)| seed);
-        let stands = |seed: Seed| self.void.get(seed.voxel) && seed.part < self.voids.len();
+        let mut seeds = self.seeds.lights.iter().chain(&self.seeds.sensors).flatten();
+        let stands = |seed: &Seed| self.void.get(seed.voxel) && seed.part < self.voids.len();
         ensure(seeds.all(stands), "seeds stand in the void")
     }
 }
 
 fn ensure(holds: bool, name: &'static str) -> Result<(), &'static str> {
     if holds { Ok(()) } else { Err(name) }
-}
-
-/// The seeds that stand somewhere, with their numbers.
-fn seeds_found(seeds: &[Result<Seed, Lost>]) -> impl Iterator<Item = (usize, Seed)> + '_ {
-    seeds.iter().enumerate().filter_map(|(number, seed)| seed.ok().map(|seed| (number, seed)))
 }
 
 /// The lattice around the mesh, once it is known to fit.

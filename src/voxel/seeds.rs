@@ -10,10 +10,12 @@
 //! light reaches; a point without a normal exactly on a thin wall goes to the side whose voxel is nearer.
 
 use super::bits::BitGrid;
+use crate::job::{Cancel, Cancelled};
 use crate::rays::{Rays, Surface};
 use crate::scene::{Light, Mesh, Sensor};
 use crate::space::{Lattice, VoxelIndex};
 use glam::{IVec3, Vec3};
+use rayon::prelude::*;
 
 /// How far from a point in matter its void may be, voxels along each axis. A wall between two voxels is two voxels thick,
 /// and in a corner the nearest void voxel can be one more away.
@@ -84,34 +86,54 @@ pub struct Seeds {
     pub sensors: Vec<Result<Seed, Lost>>,
 }
 
-/// The voxel that stands for a place: its own where that is not solid, else the nearest that it faces. A voxel of
-/// `preferred` (the void that lights reach) comes first, as long as the place sees one within reach.
+/// What places are resolved on.
+#[derive(Clone, Copy)]
+pub struct Ground<'a> {
+    /// The grid.
+    pub lattice: &'a Lattice,
+    /// Its solid voxels.
+    pub solid: &'a BitGrid,
+    /// The scene's surfaces as they are.
+    pub rays: &'a Rays,
+}
+
+/// The voxel that stands for each place: its own where that is not solid, else the nearest that it faces. A voxel of
+/// `preferred` (the void that lights reach) comes first, as long as the place sees one within reach. [`Lost`] where a place
+/// lies outside the grid or faces no void. Parallel; some microseconds for a place in or near matter.
 ///
 /// # Errors
-/// [`Lost`] where the place lies outside the grid or faces no void.
+/// [`Cancelled`] when `cancel` was raised.
 pub fn resolved(
-    place: &Place,
-    lattice: &Lattice,
-    solid: &BitGrid,
+    places: &[Place],
+    ground: &Ground,
     preferred: &BitGrid,
-    rays: &Rays,
-) -> Result<VoxelIndex, Lost> {
-    let own = lattice.voxel_at(place.point_m);
-    if !lattice.contains(own) {
+    cancel: &Cancel,
+) -> Result<Vec<Result<VoxelIndex, Lost>>, Cancelled> {
+    let voxels = places.par_iter().map(|place| {
+        cancel.check()?;
+        Ok(resolved_one(place, ground, preferred))
+    });
+    voxels.collect()
+}
+
+fn resolved_one(place: &Place, ground: &Ground, preferred: &BitGrid) -> Result<VoxelIndex, Lost> {
+    let own = ground.lattice.voxel_at(place.point_m);
+    if !ground.lattice.contains(own) {
         return Err(Lost::Outside);
     }
     if preferred.get(own) {
         return Ok(own);
     }
-    let free = |voxel| lattice.contains(voxel) && !solid.get(voxel);
-    faced(place, lattice, rays, |voxel| preferred.get(voxel))
+    let free = |voxel| ground.lattice.contains(voxel) && !ground.solid.get(voxel);
+    faced(place, ground, |voxel| preferred.get(voxel))
         .or_else(|| free(own).then_some(own))
-        .or_else(|| faced(place, lattice, rays, free))
+        .or_else(|| faced(place, ground, free))
         .ok_or(Lost::InSolid)
 }
 
 /// The nearest wanted voxel whose centre the place sees, the lowest of equals (z, then y, then x).
-fn faced(place: &Place, lattice: &Lattice, rays: &Rays, wanted: impl Fn(VoxelIndex) -> bool) -> Option<VoxelIndex> {
+fn faced(place: &Place, ground: &Ground, wanted: impl Fn(VoxelIndex) -> bool) -> Option<VoxelIndex> {
+    let Ground { lattice, rays, .. } = *ground;
     let own = lattice.voxel_at(place.point_m).0;
     let across = 2 * REACH_VOXELS + 1;
     let around = (0..across.pow(3)).map(|i| IVec3::new(i % across, i / across % across, i / across.pow(2)));
@@ -138,7 +160,7 @@ mod tests {
     use super::super::surface::voxelised;
     use super::super::test_scenes::{boxed, scene_of};
     use super::*;
-    use crate::job::{Cancel, Quiet};
+    use crate::job::Quiet;
     use crate::scene::Scene;
 
     fn check(scene: &Scene, place: Place, voxel_m: f32) -> Result<Vec3, Lost> {
@@ -146,7 +168,8 @@ mod tests {
         let lattice = Lattice::around(low, high, voxel_m);
         let (solid, _) = voxelised(scene, &lattice, &Quiet, &Cancel::new()).unwrap();
         let rays = Rays::new(scene);
-        let voxel = resolved(&place, &lattice, &solid, &BitGrid::new(lattice.size), &rays)?;
+        let ground = Ground { lattice: &lattice, solid: &solid, rays: &rays };
+        let voxel = resolved(&[place], &ground, &BitGrid::new(lattice.size), &Cancel::new()).unwrap()[0]?;
         assert!(!solid.get(voxel));
         Ok(lattice.centre_m(voxel))
     }
