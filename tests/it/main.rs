@@ -10,3 +10,9 @@ mod physics;
 
 /// The path tracer against an independent renderer.
 mod references;
+
+/// Who may use whom, and what no library module does.
+mod layers;
+
+/// The program as a user meets it.
+mod program;
