@@ -16,3 +16,15 @@ mod layers;
 
 /// The program as a user meets it.
 mod program;
+
+/// The generated scenes, modelled.
+mod modelled;
+
+/// Topology kept, structures valid, on every scene.
+mod topology;
+
+/// The same bits on any number of threads.
+mod threads;
+
+/// Long steps stop when asked to.
+mod cancel;

@@ -1,0 +1,23 @@
+//! The skeleton of every scene has the topology of its void, and its structures hold what they promise.
+
+use super::modelled::{SCENES, model, scene};
+use lightvein::skeleton::topology;
+
+#[test]
+fn every_skeleton_has_the_components_and_loops_of_its_void() {
+    for name in SCENES {
+        let model = model(&scene(name));
+        let void = topology::of_void(&model.voxels.void);
+        let shape = model.skeleton.shape();
+        assert_eq!([shape.components, shape.loops], void.betti[..2].iter().map(|&b| b as usize).collect::<Vec<_>>()[..], "{name}");
+    }
+}
+
+#[test]
+fn voxels_and_skeleton_are_valid() {
+    for name in SCENES {
+        let model = model(&scene(name));
+        assert_eq!(model.voxels.validate(), Ok(()), "{name}");
+        assert_eq!(model.skeleton.validate(&model.voxels.void), Ok(()), "{name}");
+    }
+}
