@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::build(&scene, Arc::new(Rays::new(&scene)), 0.1, u64::MAX, &progress, &cancel)?;
 
     let by_path_alone: &lightvein::flow::Estimator = &|model, probes, _settings, progress, cancel| {
-        add_lights(model, probes, "by path alone", progress, cancel, |lit| {
+        add_lights(model, probes, progress, cancel, |lit| {
             Box::new(|probe, node| {
                 let to_node_m = (lit.model.node_m(node) - probe.position_m).as_dvec3();
                 let path_m = to_node_m.length() + lit.tree.distance_m[node.index()] + lit.light.to_node_m;

@@ -14,7 +14,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("| scene | triangles | lights | voxel m | grid | void m3 | voids | nodes | components | loops | cells | necks | seconds |");
+    println!(
+        "| scene | triangles | lights | voxel m | grid | void m3 | voids | nodes | components | loops | cells | necks | seconds |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let mut remarks = Vec::new();
     for path in std::env::args_os().skip(1) {

@@ -37,12 +37,21 @@ mod tests {
     use super::*;
 
     fn common() -> Common {
-        Common { scene: "x.toml".into(), voxel: None, tolerance: None, threads: None, seed: None, json: false, output: None }
+        Common {
+            scene: "x.toml".into(),
+            voxel: None,
+            tolerance: None,
+            threads: None,
+            seed: None,
+            json: false,
+            output: None,
+        }
     }
 
     #[test]
     fn what_is_typed_goes_before_what_the_file_says() {
-        let file = ModelChoice { voxel_m: Some(0.1), method: Some(Method::Forward), seed: Some(7), ..Default::default() };
+        let file =
+            ModelChoice { voxel_m: Some(0.1), method: Some(Method::Forward), seed: Some(7), ..Default::default() };
         let plan = Plan::new(&common(), None, Settings::default(), &file);
         assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.1), Method::Forward, 7));
 

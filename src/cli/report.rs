@@ -52,7 +52,14 @@ struct SensorRow<'a> {
 
 impl<'a> Analysis<'a> {
     /// The outcome of `analyse`; only outermost stages are listed, so that they add up.
-    pub fn new(scene: &'a Scene, model: &Model, method: &'a str, field: &Field, stages: &[Stage], warnings: &'a [String]) -> Self {
+    pub fn new(
+        scene: &'a Scene,
+        model: &Model,
+        method: &'a str,
+        field: &Field,
+        stages: &[Stage],
+        warnings: &'a [String],
+    ) -> Self {
         let outermost = stages.iter().filter(|stage| stage.depth == 0);
         let sensors = scene.sensors.iter().zip(&field.readings).map(|(sensor, reading)| SensorRow {
             id: &sensor.id,
@@ -76,7 +83,10 @@ impl<'a> Analysis<'a> {
                 necks: shape.necks,
             },
             stages: outermost.map(|stage| StageRow { name: stage.name.clone(), seconds: stage.seconds }).collect(),
-            peak_memory_mb: stages.iter().filter_map(|stage| stage.peak_memory_mb).fold(None, |most: Option<f64>, mb| Some(most.map_or(mb, |most| most.max(mb)))),
+            peak_memory_mb: stages
+                .iter()
+                .filter_map(|stage| stage.peak_memory_mb)
+                .fold(None, |most: Option<f64>, mb| Some(most.map_or(mb, |most| most.max(mb)))),
             sensors: sensors.collect(),
             warnings,
         }
@@ -171,7 +181,9 @@ fn ratio(reading: &Reading, reference: &Reference) -> Option<f64> {
 /// The sensors of an analysis, brightest first, their reference beside them.
 pub fn sensor_table(scene: &Scene, method: &str, field: &Field) -> Table {
     let mut table = Table::with_head(
-        ["sensor", &format!("{method} W/m2"), "reference W/m2", "ratio", "from", "angle", "status"].map(str::to_owned).into(),
+        ["sensor", &format!("{method} W/m2"), "reference W/m2", "ratio", "from", "angle", "status"]
+            .map(str::to_owned)
+            .into(),
     );
     for number in brightest_first(&field.readings) {
         let (Some(sensor), Some(reading)) = (scene.sensors.get(number), field.readings.get(number)) else { continue };
@@ -183,7 +195,9 @@ pub fn sensor_table(scene: &Scene, method: &str, field: &Field) -> Table {
             known.map_or_else(String::new, |known| figure(known.irradiance_w_m2)),
             known.and_then(|known| ratio(reading, &known)).map_or_else(String::new, figure),
             format!("{x:+.2} {y:+.2} {z:+.2}"),
-            known.and_then(|known| angle_deg(reading, &known)).map_or_else(String::new, |angle| format!("{angle:.0} deg")),
+            known
+                .and_then(|known| angle_deg(reading, &known))
+                .map_or_else(String::new, |angle| format!("{angle:.0} deg")),
             reading.status.name().to_owned(),
         ]);
     }
@@ -193,7 +207,8 @@ pub fn sensor_table(scene: &Scene, method: &str, field: &Field) -> Table {
 /// The poster's table: a row a sensor, brightest first, a column of values and one of ratios for each method.
 pub fn comparison_table(scene: &Scene, entries: &[Entry], reference: &[Option<Reference>]) -> Table {
     let columns = entries.iter().flat_map(|entry| [format!("{} W/m2", entry.name), "ratio".to_owned()]);
-    let mut table = Table::with_head(["sensor".to_owned(), "reference W/m2".to_owned()].into_iter().chain(columns).collect());
+    let mut table =
+        Table::with_head(["sensor".to_owned(), "reference W/m2".to_owned()].into_iter().chain(columns).collect());
 
     let known_first: Vec<f64> = (0..scene.sensors.len())
         .map(|number| {
@@ -226,7 +241,16 @@ pub fn comparison_table(scene: &Scene, entries: &[Entry], reference: &[Option<Re
 
 /// A row of errors and seconds for each method.
 pub fn error_table(entries: &[Entry], seconds: impl Fn(&Entry) -> f64) -> Table {
-    let mut table = Table::new(["method", "rms factor", "max factor", "median angle", "not below", "sensors", "left out", "seconds"]);
+    let mut table = Table::new([
+        "method",
+        "rms factor",
+        "max factor",
+        "median angle",
+        "not below",
+        "sensors",
+        "left out",
+        "seconds",
+    ]);
     for entry in entries {
         let Errors { rms_factor, max_factor, median_angle_deg, counted, left_out, above, .. } = entry.errors;
         let factor = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
@@ -244,10 +268,14 @@ pub fn error_table(entries: &[Entry], seconds: impl Fn(&Entry) -> f64) -> Table 
     table
 }
 
-/// Stages with their times and the peak of memory by their end; inner stages are indented.
+/// Inner stages shorter than this are left out of the table, seconds.
+const SHORTEST_SHOWN: f64 = 0.5e-3;
+
+/// Stages with their times and the peak of memory by their end; inner stages that took long enough are indented.
 pub fn stage_table(stages: &[Stage]) -> Table {
     let mut table = Table::new(["stage", "seconds", "peak MB"]);
-    for stage in stages.iter().filter(|stage| stage.depth < 2) {
+    let is_shown = |stage: &&Stage| stage.depth == 0 || (stage.depth == 1 && stage.seconds >= SHORTEST_SHOWN);
+    for stage in stages.iter().filter(is_shown) {
         let peak = stage.peak_memory_mb.map_or_else(|| "-".to_owned(), |mb| format!("{mb:.1}"));
         table.row(vec![format!("{}{}", "  ".repeat(stage.depth), stage.name), format!("{:.4}", stage.seconds), peak]);
     }

@@ -58,7 +58,8 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
     let mut text = analysis.summary();
     text += &format!("\n{}", report::sensor_table(&scene, name, &entry.field));
     if entry.errors.counted > 0 {
-        text += &format!("\n{}", report::error_table(std::slice::from_ref(&entry), |entry| stages.seconds_of(&entry.name)));
+        text +=
+            &format!("\n{}", report::error_table(std::slice::from_ref(&entry), |entry| stages.seconds_of(&entry.name)));
     }
     text += &format!("\n{}", report::stage_table(&ended));
     say(&text)
@@ -136,7 +137,9 @@ fn open(
     stages: &Stages,
     cancel: &Cancel,
 ) -> Result<(Scene, Plan)> {
+    stages.begin("load", 0);
     let scene = Scene::load(&common.scene, stages, cancel)?;
+    stages.end();
     let plan = Plan::new(common, method, settings, &scene.model);
     if let Some(threads) = plan.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("the threads cannot be started")?;

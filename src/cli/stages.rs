@@ -68,7 +68,11 @@ impl Stages {
             return ProgressBar::hidden();
         }
         let bar = ProgressBar::with_draw_target((total > 0).then_some(total), ProgressDrawTarget::stderr_with_hz(10));
-        let template = if total > 0 { "{prefix}{msg:24} {bar:40} {percent:>3}% {eta}" } else { "{prefix}{msg:24} {spinner} {elapsed}" };
+        let template = if total > 0 {
+            "{prefix}{msg:24} {bar:40} {percent:>3}% {eta}"
+        } else {
+            "{prefix}{msg:24} {spinner} {elapsed}"
+        };
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }

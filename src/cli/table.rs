@@ -26,7 +26,8 @@ impl Table {
 impl std::fmt::Display for Table {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let width = |column: usize| self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+        let width =
+            |column: usize| self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
         let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
 
         for (number, row) in self.rows.iter().enumerate() {
@@ -63,7 +64,9 @@ mod tests {
 
     #[test]
     fn figures_keep_three_digits() {
-        for (value, want) in [(0.0, "0"), (1.2345, "1.23"), (123.456, "123"), (0.0123456, "0.0123"), (1.2e-7, "1.20e-7")] {
+        for (value, want) in
+            [(0.0, "0"), (1.2345, "1.23"), (123.456, "123"), (0.0123456, "0.0123"), (1.2e-7, "1.20e-7")]
+        {
             assert_eq!(figure(value), want);
         }
     }

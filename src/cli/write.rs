@@ -60,7 +60,8 @@ pub fn analysis(
     cancel: &Cancel,
 ) -> Result<()> {
     stages.begin("files", 0);
-    let at_nodes = estimate.map(|estimate| estimate(model, &model.probes_at_nodes(), settings, stages, cancel)).transpose()?;
+    let at_nodes =
+        estimate.map(|estimate| estimate(model, &model.probes_at_nodes(), settings, stages, cancel)).transpose()?;
     let faces_m = model.faces_to_void(scene);
     let at_faces = estimate
         .map(|estimate| estimate(model, &model.probes_at_faces(&faces_m), settings, stages, cancel))

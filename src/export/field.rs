@@ -33,7 +33,14 @@ pub fn write_csv(out: &mut dyn Write, scene: &Scene, field: &Field) -> io::Resul
         let value = format!("{:e}", reading.value_w_m2);
         let error = reading.error_w_m2.map(|error| format!("{error:e}")).unwrap_or_default();
         let status = reading.status.name().to_owned();
-        let row = [vec![sensor.id.clone()], position.into(), normal.into(), vec![value, error], direction.into(), vec![status]];
+        let row = [
+            vec![sensor.id.clone()],
+            position.into(),
+            normal.into(),
+            vec![value, error],
+            direction.into(),
+            vec![status],
+        ];
         table.write_record(row.concat())?;
     }
     table.flush()

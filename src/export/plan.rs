@@ -40,7 +40,10 @@ const DECADES: f64 = 5.0;
 pub fn write(out: &mut dyn Write, scene: &Scene, model: &Model, at_nodes: &Field) -> io::Result<()> {
     let sheet = Sheet::of(model);
     let [width, height] = [WIDTH + 2.0 * MARGIN, sheet.height + 2.0 * MARGIN + LEGEND];
-    writeln!(out, r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" font-family="sans-serif" font-size="12">"#)?;
+    writeln!(
+        out,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" font-family="sans-serif" font-size="12">"#
+    )?;
     writeln!(out, r##"<rect width="100%" height="100%" fill="#fff"/>"##)?;
     draw_void(out, model, &sheet)?;
     let brightest = at_nodes.readings.iter().map(|reading| reading.value_w_m2).fold(0.0, f64::max);
@@ -75,9 +78,8 @@ impl Sheet {
 fn draw_void(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<()> {
     let [nx, ny, nz] = model.voxels.lattice.size;
     let stride = nx.max(ny).div_ceil(MOST_CELLS);
-    let has_void = |x: usize, y: usize| {
-        (0..nz).any(|z| model.voxels.void.get(VoxelIndex::new(x as i32, y as i32, z as i32)))
-    };
+    let has_void =
+        |x: usize, y: usize| (0..nz).any(|z| model.voxels.void.get(VoxelIndex::new(x as i32, y as i32, z as i32)));
     let cell = WIDTH / nx as f32 * stride as f32;
     writeln!(out, r##"<g fill="#d9dde3">"##)?;
     for (row, y) in (0..ny).step_by(stride).enumerate() {
@@ -95,11 +97,19 @@ fn draw_void(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<()
     writeln!(out, "</g>")
 }
 
-fn draw_skeleton(out: &mut dyn Write, model: &Model, sheet: &Sheet, at_nodes: &Field, brightest: f64) -> io::Result<()> {
+fn draw_skeleton(
+    out: &mut dyn Write,
+    model: &Model,
+    sheet: &Sheet,
+    at_nodes: &Field,
+    brightest: f64,
+) -> io::Result<()> {
     writeln!(out, r#"<g stroke-width="3" stroke-linecap="round">"#)?;
     for edge in model.skeleton.graph.edge_references() {
         let [[x1, y1], [x2, y2]] = [edge.source(), edge.target()].map(|end| sheet.place(model.node_m(end)));
-        let value = |end: petgraph::graph::NodeIndex| at_nodes.readings.get(end.index()).map_or(0.0, |reading| reading.value_w_m2);
+        let value = |end: petgraph::graph::NodeIndex| {
+            at_nodes.readings.get(end.index()).map_or(0.0, |reading| reading.value_w_m2)
+        };
         let colour = colour((value(edge.source()) + value(edge.target())) / 2.0, brightest);
         writeln!(out, r#"<line x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}" stroke="{colour}"/>"#)?;
     }
@@ -150,7 +160,11 @@ fn draw_legend(out: &mut dyn Write, scene: &Scene, sheet: &Sheet, brightest: f64
     for decade in 0..=DECADES as usize {
         let value = brightest * 10_f64.powf(decade as f64 - DECADES);
         let left = MARGIN + decade as f32 * step;
-        writeln!(out, r#"<rect x="{left:.1}" y="{top:.1}" width="{step}" height="12" fill="{}"/>"#, colour(value, brightest))?;
+        writeln!(
+            out,
+            r#"<rect x="{left:.1}" y="{top:.1}" width="{step}" height="12" fill="{}"/>"#,
+            colour(value, brightest)
+        )?;
         writeln!(out, r#"<text x="{left:.1}" y="{:.1}" font-size="10">{value:.0e}</text>"#, top + 24.0)?;
     }
     let [left, line] = [MARGIN + 7.0 * step, top + 11.0];
@@ -159,7 +173,12 @@ fn draw_legend(out: &mut dyn Write, scene: &Scene, sheet: &Sheet, brightest: f64
         r##"<text x="{left:.1}" y="{line:.1}">W/m2 at the skeleton's nodes; yellow: lights; blue: sensors; teal: necks</text>"##
     )?;
     let metre = sheet.units_per_m;
-    writeln!(out, r##"<line x1="{left:.1}" y1="{0:.1}" x2="{1:.1}" y2="{0:.1}" stroke="#333"/>"##, top + 24.0, left + metre)?;
+    writeln!(
+        out,
+        r##"<line x1="{left:.1}" y1="{0:.1}" x2="{1:.1}" y2="{0:.1}" stroke="#333"/>"##,
+        top + 24.0,
+        left + metre
+    )?;
     writeln!(
         out,
         r#"<text x="{:.1}" y="{:.1}">1 m; {} from above</text>"#,

@@ -21,9 +21,15 @@ pub fn write_skeleton(
     writeln!(out, "ply\nformat ascii 1.0")?;
     writeln!(out, "comment positions, radius and length in m; flux is scalar irradiance in W/m2; section in m2")?;
     writeln!(out, "element vertex {}", graph.node_count())?;
-    writeln!(out, "property double x\nproperty double y\nproperty double z\nproperty float radius\nproperty float flux")?;
+    writeln!(
+        out,
+        "property double x\nproperty double y\nproperty double z\nproperty float radius\nproperty float flux"
+    )?;
     writeln!(out, "element edge {}", graph.edge_count())?;
-    writeln!(out, "property int vertex1\nproperty int vertex2\nproperty float length\nproperty float section\nend_header")?;
+    writeln!(
+        out,
+        "property int vertex1\nproperty int vertex2\nproperty float length\nproperty float section\nend_header"
+    )?;
     for (id, node) in graph.node_weights().enumerate() {
         let [x, y, z] = scene.to_user_m(node.position_m).to_array();
         let flux = at_nodes.and_then(|field| field.readings.get(id)).map_or(0.0, |reading| reading.value_w_m2);
@@ -40,7 +46,12 @@ pub fn write_skeleton(
 ///
 /// # Errors
 /// What the writer says.
-pub fn write_mesh_field(out: &mut dyn Write, scene: &Scene, triangles_m: &[[Vec3; 3]], field: &Field) -> io::Result<()> {
+pub fn write_mesh_field(
+    out: &mut dyn Write,
+    scene: &Scene,
+    triangles_m: &[[Vec3; 3]],
+    field: &Field,
+) -> io::Result<()> {
     writeln!(out, "ply\nformat ascii 1.0")?;
     writeln!(out, "comment positions in m; irradiance in W/m2 on the side of the face that sees the void")?;
     writeln!(out, "element vertex {}", 3 * triangles_m.len())?;

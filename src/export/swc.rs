@@ -62,7 +62,8 @@ impl Forest {
                 }
             }
         }
-        let is_tree = |a: NodeIndex, b: NodeIndex| forest.parent[a.index()] == Some(b) || forest.parent[b.index()] == Some(a);
+        let is_tree =
+            |a: NodeIndex, b: NodeIndex| forest.parent[a.index()] == Some(b) || forest.parent[b.index()] == Some(a);
         let ends = graph.edge_indices().filter_map(|edge| graph.edge_endpoints(edge));
         forest.closing = ends.filter(|&(a, b)| !is_tree(a, b)).map(|(a, b)| [a.index(), b.index()]).collect();
         forest

@@ -25,7 +25,7 @@ pub fn estimate(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Field, Cancelled> {
-    add_lights(model, probes, "backward", progress, cancel, from_light)
+    add_lights(model, probes, progress, cancel, from_light)
 }
 
 /// What one light gives.

@@ -67,7 +67,6 @@ const LIGHTS_AT_ONCE: usize = 16;
 pub fn add_lights(
     model: &Model,
     probes: &[Probe],
-    stage: &str,
     progress: &dyn Progress,
     cancel: &Cancel,
     heuristic: impl for<'a> Fn(&'a Lit<'a>) -> AtProbe<'a> + Sync,
@@ -76,7 +75,7 @@ pub fn add_lights(
     let mut readings: Vec<Reading> = probes.iter().map(unlit).collect();
     let mut refused = 0_usize;
 
-    progress.begin(stage, model.shining.len() as u64);
+    progress.begin("lights", model.shining.len() as u64);
     for some_lights in model.shining.chunks(LIGHTS_AT_ONCE) {
         cancel.check()?;
         let tree = |light: &Shining| light.place.ok().map(|root| PathTree::from(&model.skeleton, root));
@@ -87,7 +86,8 @@ pub fn add_lights(
             if let Some(tree) = tree {
                 let lit = Lit { model, light, tree };
                 let at_probe = heuristic(&lit);
-                let added = readings.par_iter_mut().zip(probes).map(|(reading, probe)| add(reading, probe, &lit, &at_probe));
+                let added =
+                    readings.par_iter_mut().zip(probes).map(|(reading, probe)| add(reading, probe, &lit, &at_probe));
                 refused += added.filter(|&taken| !taken).count();
             }
             progress.advance(1);
@@ -100,7 +100,7 @@ pub fn add_lights(
     }
     let mut warnings = Vec::new();
     if refused > 0 {
-        warnings.push(format!("{stage}: {refused} arrivals were negative or not finite and count as nothing"));
+        warnings.push(format!("{refused} arrivals were negative or not finite and count as nothing"));
     }
     Ok(Field { readings, warnings })
 }

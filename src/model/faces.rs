@@ -45,7 +45,8 @@ fn cut(triangle_m: [Vec3; 3], longest_m: f32, into: &mut Vec<[Vec3; 3]>) {
     let mut left = vec![triangle_m];
     while let Some([a, b, c]) = left.pop() {
         let edges = [(a.distance(b), [a, b, c]), (b.distance(c), [b, c, a]), (c.distance(a), [c, a, b])];
-        let (edge_m, [from, to, apex]) = edges.into_iter().fold(edges[0], |long, edge| if edge.0 > long.0 { edge } else { long });
+        let (edge_m, [from, to, apex]) =
+            edges.into_iter().fold(edges[0], |long, edge| if edge.0 > long.0 { edge } else { long });
         if edge_m <= longest_m {
             into.push([a, b, c]);
         } else {
@@ -77,7 +78,8 @@ mod tests {
         let whole = area([Vec3::ZERO, Vec3::new(10.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 1.0)]);
         let sum: f32 = small.iter().map(|&face| area(face)).sum();
         assert!((sum - whole).abs() < 1e-3 * whole);
-        let longest = small.iter().flat_map(|&[a, b, c]| [a.distance(b), b.distance(c), c.distance(a)]).fold(0.0, f32::max);
+        let longest =
+            small.iter().flat_map(|&[a, b, c]| [a.distance(b), b.distance(c), c.distance(a)]).fold(0.0, f32::max);
         assert!(longest <= 0.7);
     }
 }

@@ -81,9 +81,9 @@ impl Matter<'_> {
         let bricks = self.void.bricks();
         // In half voxels, whole numbers: ties are then ties.
         let mut best = -IVec3::X * (2 * corner.x + 1);
-        let border = [IVec3::X, IVec3::Y, IVec3::Z].into_iter().flat_map(|axis| {
-            [-axis * (2 * corner + 1), axis * (2 * (size - corner) + 1)]
-        });
+        let border = [IVec3::X, IVec3::Y, IVec3::Z]
+            .into_iter()
+            .flat_map(|axis| [-axis * (2 * corner + 1), axis * (2 * (size - corner) + 1)]);
         for to in border {
             if to.length_squared() < best.length_squared() {
                 best = to;
@@ -217,7 +217,10 @@ pub(crate) mod tests {
 
     #[test]
     fn rays_leave_the_void_where_it_ends() {
-        let grid = boxes([20, 8, 8], &[(IVec3::new(2, 2, 2), IVec3::new(9, 6, 6)), (IVec3::new(12, 2, 2), IVec3::new(19, 6, 6))]);
+        let grid = boxes(
+            [20, 8, 8],
+            &[(IVec3::new(2, 2, 2), IVec3::new(9, 6, 6)), (IVec3::new(12, 2, 2), IVec3::new(19, 6, 6))],
+        );
         let matter = grid.matter();
         let from = Vec3::new(4.0, 4.0, 4.0);
         let leave = matter.leave_void(from, Vec3::X, 0.0);

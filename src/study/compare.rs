@@ -61,8 +61,11 @@ pub fn compare(
     let probes = model.probes_at_sensors(scene);
     let answer = |contestant: &Contestant| {
         progress.begin(&contestant.name, 0);
-        let field = run(scene, model, &probes, contestant, settings, progress, cancel)?;
+        let mut field = run(scene, model, &probes, contestant, settings, progress, cancel)?;
         progress.end();
+        for warning in &mut field.warnings {
+            *warning = format!("{}: {warning}", contestant.name);
+        }
         let errors = errors(&field.readings, reference);
         Ok(Entry { name: contestant.name.clone(), field, errors })
     };

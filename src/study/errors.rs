@@ -40,10 +40,12 @@ pub fn is_good(reference: &Reference) -> bool {
 
 /// Compares readings with references, entry by entry; entries without a reference count nowhere.
 pub fn errors(readings: &[Reading], references: &[Option<Reference>]) -> Errors {
-    let with_reference = || readings.iter().zip(references).filter_map(|(reading, known)| Some((reading, known.as_ref()?)));
+    let with_reference =
+        || readings.iter().zip(references).filter_map(|(reading, known)| Some((reading, known.as_ref()?)));
     let good = || with_reference().filter(|(_, reference)| is_good(reference));
 
-    let logs: Vec<f64> = good().map(|(reading, reference)| (reading.value_w_m2 / reference.irradiance_w_m2).log10()).collect();
+    let logs: Vec<f64> =
+        good().map(|(reading, reference)| (reading.value_w_m2 / reference.irradiance_w_m2).log10()).collect();
     let mean_square = logs.iter().map(|log| log * log).sum::<f64>() / logs.len() as f64;
     let max_log = logs.iter().map(|log| log.abs()).fold(0.0, f64::max);
 

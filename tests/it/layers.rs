@@ -56,8 +56,11 @@ fn no_library_module_reads_the_clock_or_an_unseeded_generator() {
 #[test]
 fn no_library_module_prints_or_unwraps() {
     for (module, path, code) in sources() {
-        let marks: &[&str] =
-            if module == "cli" { &[".unwrap()", ".expect("] } else { &[".unwrap()", ".expect(", "println!", "eprintln!", "dbg!"] };
+        let marks: &[&str] = if module == "cli" {
+            &[".unwrap()", ".expect("]
+        } else {
+            &[".unwrap()", ".expect(", "println!", "eprintln!", "dbg!"]
+        };
         for mark in marks {
             assert!(!code.contains(mark), "{}: {module} has {mark}", path.display());
         }

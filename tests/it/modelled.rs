@@ -19,5 +19,6 @@ pub fn scene(name: &str) -> Scene {
 /// The scene's model at the voxel size that its file gives.
 pub fn model(scene: &Scene) -> Model {
     let voxel_m = scene.model.voxel_m.expect("generated scenes give their voxel size");
-    Model::build(scene, Arc::new(Rays::new(scene)), voxel_m, u64::MAX, &Quiet, &Cancel::new()).expect("the scene models")
+    Model::build(scene, Arc::new(Rays::new(scene)), voxel_m, u64::MAX, &Quiet, &Cancel::new())
+        .expect("the scene models")
 }

@@ -71,7 +71,18 @@ fn analyse_speaks_the_json_of_the_contract() {
     let output = run(&["analyse", GALLERY, "--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let keys = ["scene", "method", "voxel_m", "grid", "void_voxels", "skeleton", "stages", "peak_memory_mb", "sensors", "warnings"];
+    let keys = [
+        "scene",
+        "method",
+        "voxel_m",
+        "grid",
+        "void_voxels",
+        "skeleton",
+        "stages",
+        "peak_memory_mb",
+        "sensors",
+        "warnings",
+    ];
     for key in keys {
         assert!(!json[key].is_null(), "{key} is missing");
     }
@@ -94,7 +105,10 @@ fn compare_speaks_the_json_of_the_contract() {
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(json["prepare_seconds"].as_f64().unwrap() > 0.0);
     let methods = json["methods"].as_array().unwrap();
-    assert_eq!(methods.iter().map(|method| method["name"].as_str().unwrap()).collect::<Vec<_>>(), ["backward", "forward"]);
+    assert_eq!(
+        methods.iter().map(|method| method["name"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["backward", "forward"]
+    );
     for method in methods {
         for key in ["seconds", "rms_factor", "max_factor", "median_angle_deg"] {
             assert!(method[key].is_f64(), "{key} is missing");
@@ -112,11 +126,20 @@ fn analyse_writes_its_files_whole() {
     let out = folder.path().join("made/for/it");
     let output = run(&["analyse", GALLERY, "-o", out.to_str().unwrap()]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let mut names: Vec<String> = files(&out).iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> =
+        files(&out).iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect();
     names.sort();
     let want = [
-        "field.csv", "field.ply", "plan.svg", "report.json", "skeleton.graphml", "skeleton.json", "skeleton.ply", "skeleton.swc",
-        "voxels.json", "voxels.npy",
+        "field.csv",
+        "field.ply",
+        "plan.svg",
+        "report.json",
+        "skeleton.graphml",
+        "skeleton.json",
+        "skeleton.ply",
+        "skeleton.swc",
+        "voxels.json",
+        "voxels.npy",
     ];
     assert_eq!(names, want);
     let skeleton: Value = serde_json::from_slice(&fs::read(out.join("skeleton.json")).unwrap()).unwrap();

@@ -50,7 +50,9 @@ fn same_bits(a: &[Field; 3], b: &[Field; 3]) -> bool {
     let bits = |field: &Field| -> Vec<[u64; 4]> {
         let readings = field.readings.iter();
         readings
-            .map(|reading| [reading.value_w_m2, reading.flux_w_m2.x, reading.flux_w_m2.y, reading.flux_w_m2.z].map(f64::to_bits))
+            .map(|reading| {
+                [reading.value_w_m2, reading.flux_w_m2.x, reading.flux_w_m2.y, reading.flux_w_m2.z].map(f64::to_bits)
+            })
             .collect()
     };
     a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
