@@ -121,7 +121,7 @@ pub fn voxelise(
     progress.end();
 
     progress.begin("openings", 0);
-    let closed = closed::closed_openings(&lattice, &solid, &void, rays, cancel)?;
+    let closed = closed::closed_openings(&ground, &surface, &void, cancel)?;
     progress.end();
 
     let mut warnings = parts::warnings(&voids, &seeds);
