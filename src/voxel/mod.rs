@@ -222,13 +222,17 @@ mod tests {
                 true => (Quat::IDENTITY, (Vec3::from_array(shift) * 10.0).round() / 10.0),
                 false => (Quat::from_euler(EulerRot::XYZ, turn[0], turn[1], turn[2]), Vec3::from_array(shift)),
             };
-            let mut scene = scene_of(&moved(&boxed(-half, half), turn, shift));
-            scene.lights.push(lamp(shift));
-            let voxels = voxels_of(&scene, 0.1);
-            prop_assert_eq!(voxels.voids.len(), 1);
-            prop_assert!(!voxels.voids[0].leaks);
-            prop_assert_eq!(&voxels.warnings, &Vec::<String>::new());
-            let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
+            // A box, and a wall without thickness that parts it at its middle.
+            let mut triangles = boxed(-half, half);
+            triangles.extend(boxed(Vec3::new(0.0, -half.y, -half.z), Vec3::new(0.0, half.y, half.z)).split_off(8));
+            let mut scene = scene_of(&moved(&triangles, turn, shift));
+            let aside = turn * Vec3::new(0.5 * half.x, 0.0, 0.0);
+            scene.lights.extend([lamp(shift - aside), lamp(shift + aside)]);
+            let voxels = voxels_of(&scene, 0.05);
+            prop_assert_eq!(voxels.voids.len(), 2);
+            prop_assert!(!voxels.voids[0].leaks && !voxels.voids[1].leaks);
+            prop_assert_eq!(&voxels.closed, &[]);
+            let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x) + 8.0 * half.y * half.z;
             prop_assert!((voxels.surface.area_m2() / f64::from(area) - 1.0).abs() < 1e-4);
         }
     }
@@ -249,6 +253,28 @@ mod tests {
             assert_eq!(voxels.seeds.sensors[0].unwrap().part, want - 1);
             assert_eq!(voxels.seeds.sensors[1].unwrap().part, 0);
             assert_eq!(voxels.warnings.len(), want - 1, "{:?}", voxels.warnings);
+        }
+    }
+
+    #[test]
+    fn sensors_know_which_light_is_theirs() {
+        let mut triangles = Vec::new();
+        for i in 0..3 {
+            let low = Vec3::new(3.0 * i as f32, 0.0, 0.0);
+            triangles.extend(boxed(low, low + 2.0));
+        }
+        let mut scene = scene_of(&triangles);
+        let middle = |i: usize| Vec3::new(3.0 * i as f32 + 1.0, 1.0, 1.0);
+        scene.lights.extend([lamp(middle(2)), lamp(middle(0)), lamp(middle(2) + 0.5), lamp(Vec3::splat(-9.0))]);
+        scene.sensors.extend([sensor(middle(0)), sensor(middle(1)), sensor(middle(2)), sensor(Vec3::splat(70.0))]);
+        let voxels = voxels_of(&scene, 0.1);
+        let parts: Vec<_> = voxels.voids.iter().map(|part| (part.lights.clone(), part.sensors.clone())).collect();
+        assert_eq!(parts, [(vec![0, 2], vec![2]), (vec![1], vec![0]), (vec![], vec![1])]);
+        assert_eq!(voxels.seeds.lights[3], Err(seeds::Lost::Outside));
+        assert_eq!(voxels.seeds.sensors[3], Err(seeds::Lost::Outside));
+        let told = voxels.warnings.join("; ");
+        for words in ["2 separate voids", "1 sensor(s) stand in voids that no light", "1 light(s) lie outside"] {
+            assert!(told.contains(words), "{told}");
         }
     }
 
