@@ -226,6 +226,9 @@ mod tests {
             let off_m = (found[0].position_m - Vec3::new(2.0, 1.05, 1.0)).abs();
             assert!(off_m.x < 0.06 && off_m.y < 0.06 && off_m.z < 0.2, "{found:?}");
             assert!(found[0].crossings >= 15);
+            let scene = Scene { origin_m: glam::DVec3::new(1000.0, 0.0, 0.0), ..Scene::default() };
+            let told = warning(&found, &scene, 0.1).unwrap();
+            assert!(told.starts_with("1 opening(s) close") && told.contains("(100"), "{told}");
         }
     }
 
@@ -234,6 +237,7 @@ mod tests {
         for (slot_m, voxel_m) in [(0.0, 0.1), (0.35, 0.1), (0.15, 0.04)] {
             assert_eq!(openings(&rooms_with_a_slot(0.1, slot_m, 0.0), voxel_m), [], "{slot_m} {voxel_m}");
         }
+        assert_eq!(warning(&[], &Scene::default(), 0.1), None);
     }
 
     #[test]

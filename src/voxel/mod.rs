@@ -299,6 +299,25 @@ mod tests {
     }
 
     #[test]
+    fn broken_voxels_are_told_by_name() {
+        let mut scene = scene_of(&boxed(Vec3::ZERO, Vec3::splat(1.0)));
+        scene.lights.push(lamp(Vec3::splat(0.5)));
+        let whole = voxels_of(&scene, 0.1);
+        let centre = whole.lattice.voxel_at(Vec3::splat(0.5));
+        let check = |broken: &dyn Fn(&mut Voxels), want: &str| {
+            let mut voxels = whole.clone();
+            broken(&mut voxels);
+            assert_eq!(voxels.validate(), Err(want));
+        };
+        check(&|v| v.void.set(centre, false), "the void is closed under steps to free neighbours");
+        check(&|v| v.solid.set(centre, true), "solid and void are disjoint");
+        check(&|v| v.surface = SurfaceVoxels::default(), "each solid voxel has a patch");
+        check(&|v| v.voids[0].voxels += 1, "the voids make up the void");
+        check(&|v| v.seeds.lights[0] = Ok(Seed { voxel: centre, part: 1 }), "seeds stand in the void");
+        check(&|v| v.void = BitGrid::new([1, 1, 1]), "grids have the lattice's size");
+    }
+
+    #[test]
     fn glazing_is_not_solid() {
         let mut scene = scene_of(&boxed(Vec3::ZERO, Vec3::splat(2.0)));
         scene.materials[0].transmittance = 0.7;
