@@ -121,7 +121,7 @@ pub fn voxelise(
     progress.end();
 
     progress.begin("openings", 0);
-    let closed = closed::closed_openings(&lattice, &solid, &void, rays, cancel)?;
+    let closed = closed::closed_openings(&ground, &surface, &void, cancel)?;
     progress.end();
 
     let mut warnings = parts::warnings(&voids, &seeds);
@@ -222,13 +222,17 @@ mod tests {
                 true => (Quat::IDENTITY, (Vec3::from_array(shift) * 10.0).round() / 10.0),
                 false => (Quat::from_euler(EulerRot::XYZ, turn[0], turn[1], turn[2]), Vec3::from_array(shift)),
             };
-            let mut scene = scene_of(&moved(&boxed(-half, half), turn, shift));
-            scene.lights.push(lamp(shift));
-            let voxels = voxels_of(&scene, 0.1);
-            prop_assert_eq!(voxels.voids.len(), 1);
-            prop_assert!(!voxels.voids[0].leaks);
-            prop_assert_eq!(&voxels.warnings, &Vec::<String>::new());
-            let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
+            // A box, and a wall without thickness that parts it at its middle.
+            let mut triangles = boxed(-half, half);
+            triangles.extend(boxed(Vec3::new(0.0, -half.y, -half.z), Vec3::new(0.0, half.y, half.z)).split_off(8));
+            let mut scene = scene_of(&moved(&triangles, turn, shift));
+            let aside = turn * Vec3::new(0.5 * half.x, 0.0, 0.0);
+            scene.lights.extend([lamp(shift - aside), lamp(shift + aside)]);
+            let voxels = voxels_of(&scene, 0.05);
+            prop_assert_eq!(voxels.voids.len(), 2);
+            prop_assert!(!voxels.voids[0].leaks && !voxels.voids[1].leaks);
+            prop_assert_eq!(&voxels.closed, &[]);
+            let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x) + 8.0 * half.y * half.z;
             prop_assert!((voxels.surface.area_m2() / f64::from(area) - 1.0).abs() < 1e-4);
         }
     }
@@ -253,6 +257,28 @@ mod tests {
     }
 
     #[test]
+    fn sensors_know_which_light_is_theirs() {
+        let mut triangles = Vec::new();
+        for i in 0..3 {
+            let low = Vec3::new(3.0 * i as f32, 0.0, 0.0);
+            triangles.extend(boxed(low, low + 2.0));
+        }
+        let mut scene = scene_of(&triangles);
+        let middle = |i: usize| Vec3::new(3.0 * i as f32 + 1.0, 1.0, 1.0);
+        scene.lights.extend([lamp(middle(2)), lamp(middle(0)), lamp(middle(2) + 0.5), lamp(Vec3::splat(-9.0))]);
+        scene.sensors.extend([sensor(middle(0)), sensor(middle(1)), sensor(middle(2)), sensor(Vec3::splat(70.0))]);
+        let voxels = voxels_of(&scene, 0.1);
+        let parts: Vec<_> = voxels.voids.iter().map(|part| (part.lights.clone(), part.sensors.clone())).collect();
+        assert_eq!(parts, [(vec![0, 2], vec![2]), (vec![1], vec![0]), (vec![], vec![1])]);
+        assert_eq!(voxels.seeds.lights[3], Err(seeds::Lost::Outside));
+        assert_eq!(voxels.seeds.sensors[3], Err(seeds::Lost::Outside));
+        let told = voxels.warnings.join("; ");
+        for words in ["2 separate voids", "1 sensor(s) stand in voids that no light", "1 light(s) lie outside"] {
+            assert!(told.contains(words), "{told}");
+        }
+    }
+
+    #[test]
     fn a_box_without_a_lid_leaks_and_says_so() {
         let mut triangles = boxed(Vec3::ZERO, Vec3::splat(2.0));
         triangles.retain(|triangle| !triangle.iter().all(|corner| corner.z == 2.0));
@@ -270,6 +296,25 @@ mod tests {
         let voxels = voxels_of(&scene_of(&triangles), 0.1);
         assert_eq!(voxels.voids.len(), 1);
         assert!(!voxels.voids[0].leaks && voxels.void.get(voxels.lattice.voxel_at(Vec3::new(6.5, 1.0, 1.0))));
+    }
+
+    #[test]
+    fn broken_voxels_are_told_by_name() {
+        let mut scene = scene_of(&boxed(Vec3::ZERO, Vec3::splat(1.0)));
+        scene.lights.push(lamp(Vec3::splat(0.5)));
+        let whole = voxels_of(&scene, 0.1);
+        let centre = whole.lattice.voxel_at(Vec3::splat(0.5));
+        let check = |broken: &dyn Fn(&mut Voxels), want: &str| {
+            let mut voxels = whole.clone();
+            broken(&mut voxels);
+            assert_eq!(voxels.validate(), Err(want));
+        };
+        check(&|v| v.void.set(centre, false), "the void is closed under steps to free neighbours");
+        check(&|v| v.solid.set(centre, true), "solid and void are disjoint");
+        check(&|v| v.surface = SurfaceVoxels::default(), "each solid voxel has a patch");
+        check(&|v| v.voids[0].voxels += 1, "the voids make up the void");
+        check(&|v| v.seeds.lights[0] = Ok(Seed { voxel: centre, part: 1 }), "seeds stand in the void");
+        check(&|v| v.void = BitGrid::new([1, 1, 1]), "grids have the lattice's size");
     }
 
     #[test]

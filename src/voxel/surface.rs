@@ -12,7 +12,7 @@
 use super::bits::BitGrid;
 use super::brick::EDGE;
 use super::cut::each_piece;
-use super::touch::Touch;
+use super::touch::{self, Touch};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::scene::Scene;
 use crate::space::{Lattice, VoxelIndex};
@@ -140,7 +140,8 @@ fn faces_by_slab(scene: &Scene, lattice: &Lattice, slabs: usize) -> Vec<Vec<u32>
     let mut by_slab = vec![Vec::new(); slabs];
     for triangle in 0..scene.mesh.triangles.len() as u32 {
         let Some(Face { corners, .. }) = face(scene, lattice, triangle) else { continue };
-        let (first, last) = Touch::new(corners).range();
+        let [a, b, c] = corners;
+        let (first, last) = touch::range(a.min(b).min(c), a.max(b).max(c));
         let from = first.z.div_euclid(edge).max(0) as usize;
         let to = (last.z.div_euclid(edge) + 1).clamp(0, slabs as i32) as usize;
         by_slab[from.min(to)..to].iter_mut().for_each(|slab| slab.push(triangle));
