@@ -97,6 +97,8 @@ def main():
             f" roulette from depth {options.rr_depth}, seed {options.seed}",
             f"# made {datetime.date.today()} by scenes/reference.py {scene.path.name}",
         ]
+        if any(scene.emission.get(material) for material, _ in scene.faces):
+            lines.append("# emissive faces of the mesh shine to one side and reflect nothing, whatever their Kd")
         if rare:
             lines.append(f"# one sample over {TRUSTED_SHARE:.0%} of the sum, standard error not to be trusted: {' '.join(rare)}")
         lines.append("id,irradiance,stderr,fx,fy,fz")
