@@ -70,8 +70,10 @@ pub enum Kind {
         found: String,
     },
     /// A face names a vertex that is not there.
-    #[error("a face uses vertex {index}, but there are {count}")]
+    #[error("{face} uses vertex {index}, but there are {count}")]
     NoSuchVertex {
+        /// The face, by number where there is no line.
+        face: String,
         /// The vertex, numbered as the format does.
         index: i64,
         /// How many there are.

@@ -61,10 +61,23 @@ impl<'a> Input<'a> {
         Ok((path, bytes))
     }
 
+    /// The error of a neighbour as one of this file: it may be well, but names a file that cannot be read.
+    pub fn named(&self, what: &'static str, file: &str, error: SceneError) -> SceneError {
+        match error.kind {
+            Kind::Read(reason) => self.error(None, Kind::Named { what, file: file.to_owned(), reason }),
+            _ => error,
+        }
+    }
+
     /// Begins the stage of parsing this input.
     pub fn parse(&self) -> Parse<'_> {
         self.progress.begin("parse", self.bytes.len() as u64);
         Parse { input: self, reported: 0 }
+    }
+
+    /// Whether all three coordinates are finite and near enough.
+    pub fn fits(&self, point: DVec3) -> bool {
+        point.is_finite() && point.abs().max_element() <= self.farthest
     }
 
     /// A coordinate triple, if all three are finite and near enough.
@@ -72,14 +85,15 @@ impl<'a> Input<'a> {
     /// # Errors
     /// [`Kind::NotFinite`], [`Kind::Outside`].
     pub fn position(&self, at: impl Into<Option<usize>>, what: &str, point: DVec3) -> Result<DVec3, SceneError> {
-        if point.abs().max_element() <= self.farthest && point.is_finite() {
+        if self.fits(point) {
             return Ok(point);
         }
         let worst = |value: &f64| !value.is_finite() || value.abs() > self.farthest;
         let value = point.to_array().into_iter().find(worst).unwrap_or(f64::NAN);
         let what = format!("coordinate of {what}");
         let kind = if value.is_finite() {
-            Kind::Outside { what, value, bound: "-1e8 to 1e8 m" }
+            let value_m = value * (FARTHEST_M / self.farthest);
+            Kind::Outside { what, value: value_m, bound: "-1e8 to 1e8 m" }
         } else {
             Kind::NotFinite { what, value }
         };
@@ -169,6 +183,11 @@ pub fn shown(bytes: &[u8]) -> String {
         short.push_str("...");
     }
     if short.is_empty() { "nothing".to_owned() } else { format!("{short:?}") }
+}
+
+/// A number of things as a person writes it: "1 face", "3 faces".
+pub fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
 /// The words of a line: what stands between blanks.

@@ -5,7 +5,7 @@
 
 use super::error::{Kind, SceneError};
 use super::file::{DEFAULT_REFLECTANCE, DescribedLight, Description, Lined, Override, Up, read_scene_file};
-use super::input::{FARTHEST_M, Input, read_file};
+use super::input::{FARTHEST_M, Input, counted, read_file};
 use super::merge::{Part, merge};
 use super::read::{FORMATS, Format, RawMesh};
 use super::reference::{match_sensors, read_reference_csv};
@@ -120,10 +120,10 @@ impl Loader<'_> {
             let without = matched.iter().filter(|reference| reference.is_none()).count();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if unknown > 0 {
-                scene.warnings.push(format!("{name}: {unknown} rows name no sensor"));
+                scene.warnings.push(format!("{name}: {} left out that no sensor is called", counted(unknown, "id")));
             }
             if without > 0 {
-                scene.warnings.push(format!("{name}: {without} sensors have no reference"));
+                scene.warnings.push(format!("{name}: {} without a reference", counted(without, "sensor")));
             }
             scene.reference = matched;
         }

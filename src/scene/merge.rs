@@ -6,7 +6,7 @@
 //! ones stay, one for each winding, as each winding emits to its own side.
 
 use super::error::{Kind, SceneError};
-use super::input::FARTHEST_M;
+use super::input::{FARTHEST_M, counted};
 use super::{Material, Mesh};
 use crate::job::Cancel;
 use glam::{DVec3, Vec3};
@@ -76,10 +76,10 @@ pub fn merge(
         let degenerate = too_few_corners + part.iter().filter(|&&fate| fate == Fate::Degenerate).count();
         let duplicate = part.iter().filter(|&&fate| fate == Fate::Duplicate).count();
         if degenerate > 0 {
-            warnings.push(format!("{name}: {degenerate} degenerate faces left out"));
+            warnings.push(format!("{name}: {} left out", counted(degenerate, "degenerate face")));
         }
         if duplicate > 0 {
-            warnings.push(format!("{name}: {duplicate} duplicate faces left out"));
+            warnings.push(format!("{name}: {} left out", counted(duplicate, "duplicate face")));
         }
         first = end;
     }
@@ -102,7 +102,7 @@ fn origin_of(parts: &[Part]) -> Result<Option<DVec3>, SceneError> {
     for part in parts {
         for &vertex in part.triangles.iter().flatten() {
             let Some(&p) = part.positions_m.get(vertex as usize) else { continue };
-            if !(p.abs().max_element() <= FARTHEST_M) {
+            if !p.is_finite() || p.abs().max_element() > FARTHEST_M {
                 let value = p.to_array().into_iter().find(|c| !(c.abs() <= FARTHEST_M)).unwrap_or(f64::NAN);
                 let what = format!("coordinate of vertex {}", vertex + 1);
                 return Err(SceneError::new(&part.path, None, Kind::Outside { what, value, bound: "-1e8 to 1e8 m" }));

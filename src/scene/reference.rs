@@ -28,13 +28,13 @@ pub fn read_reference_csv(input: &Input) -> Result<Vec<(String, Reference)>, Sce
             let what = what.to_owned();
             if value < 0.0 { Err(Kind::Outside { what, value, bound: "0 and above" }) } else { Ok(value) }
         };
-        let component =
-            |index: usize, what: &str| if field(index).is_empty() { Ok(0.0) } else { finite(field(index), what) };
-        let reference = Reference {
-            irradiance_w_m2: positive(1, "irradiance")?,
-            stderr_w_m2: positive(2, "stderr")?,
-            flux_w_m2: DVec3::new(component(3, "fx")?, component(4, "fy")?, component(5, "fz")?),
+        let flux_w_m2 = match (3..6).filter(|&index| !field(index).is_empty()).count() {
+            0 => DVec3::ZERO,
+            3 => DVec3::new(finite(field(3), "fx")?, finite(field(4), "fy")?, finite(field(5), "fz")?),
+            found => return Err(Kind::Fields { found, expected: "0 or 3 for fx,fy,fz".into() }),
         };
+        let reference =
+            Reference { irradiance_w_m2: positive(1, "irradiance")?, stderr_w_m2: positive(2, "stderr")?, flux_w_m2 };
         rows.push((id, reference));
         Ok(())
     })?;

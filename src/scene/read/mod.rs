@@ -10,11 +10,12 @@ use super::error::{Kind, SceneError};
 use super::input::Input;
 use glam::DVec3;
 
+mod accessor;
 pub mod gltf;
 pub mod mtl;
 pub mod obj;
 pub mod ply;
-pub mod polygon;
+mod polygon;
 pub mod stl;
 
 /// Most vertices of one mesh file, instances counted; 1.5 GB of positions. More would come from a damaged count.

@@ -6,7 +6,7 @@
 
 use super::luminance;
 use crate::scene::error::{Kind, SceneError};
-use crate::scene::input::{Input, Lines, number, shown, text, without_mark, words};
+use crate::scene::input::{Input, Lines, counted, number, shown, text, without_mark, words};
 
 /// What a material file says of one material.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -68,10 +68,10 @@ pub fn read_mtl(input: &Input) -> Result<Materials, SceneError> {
         }
     }
     if textures > 0 {
-        read.warnings.push(format!("{textures} textures (map_Kd) not read, Kd stands for them"));
+        read.warnings.push(format!("{} (map_Kd) not read, Kd stands for it", counted(textures, "texture")));
     }
     if spectra > 0 {
-        read.warnings.push(format!("{spectra} colours given as spectra or CIE XYZ left out"));
+        read.warnings.push(format!("{} given as spectrum or CIE XYZ left out", counted(spectra, "colour")));
     }
     Ok(read)
 }

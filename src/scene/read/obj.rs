@@ -5,10 +5,10 @@
 //! material's name, so that a scene file can give it properties. Texture coordinates, normals, lines and points are
 //! passed over. A face may only use vertices above it in the file.
 
-use super::polygon::{Cut, triangulate};
+use super::polygon::{Cut, tangled, triangulate};
 use super::{RawMesh, check_vertices, mtl};
 use crate::scene::error::{Kind, SceneError};
-use crate::scene::input::{Input, Lines, next_triple, shown, text, without_mark, words};
+use crate::scene::input::{Input, Lines, counted, next_triple, shown, text, without_mark, words};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
@@ -85,10 +85,10 @@ pub fn read_obj(input: &Input) -> Result<RawMesh, SceneError> {
 
     give_properties(&mut mesh, &library);
     if unknown > 0 {
-        mesh.warnings.push(format!("{unknown} lines with unknown statements left out"));
+        mesh.warnings.push(format!("{} left out", counted(unknown, "unknown statement")));
     }
     if crossing > 0 {
-        mesh.warnings.push(format!("{crossing} faces cross themselves or are too tangled, cut up as far as possible"));
+        mesh.warnings.push(tangled(crossing));
     }
     Ok(mesh)
 }
@@ -102,9 +102,9 @@ fn corner(word: &[u8], count: usize) -> Result<u32, Kind> {
     };
     let from_zero = if index < 0 { index.saturating_add(count as i64) } else { index - 1 };
     if index == 0 || from_zero < 0 || from_zero >= count as i64 {
-        return Err(Kind::NoSuchVertex { index, count });
+        return Err(Kind::NoSuchVertex { face: "a face".into(), index, count });
     }
-    u32::try_from(from_zero).map_err(|_| Kind::NoSuchVertex { index, count })
+    u32::try_from(from_zero).map_err(|_| Kind::NoSuchVertex { face: "a face".into(), index, count })
 }
 
 /// What stands behind the statement `word` on a line, as text without blanks around it.
@@ -170,7 +170,7 @@ fn give_properties(mesh: &mut RawMesh, library: &HashMap<String, mtl::Properties
     }
     let missing = mesh.materials.iter().filter(|material| !library.contains_key(&material.name)).count();
     if missing > 0 && !library.is_empty() {
-        mesh.warnings.push(format!("{missing} materials are in no material file"));
+        mesh.warnings.push(format!("{} in no material file", counted(missing, "material")));
     }
 }
 
@@ -224,9 +224,6 @@ mod tests {
     #[test]
     fn a_missing_material_file_is_a_warning() {
         let mesh = read("mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nvapour 3\n").unwrap();
-        assert_eq!(
-            mesh.warnings,
-            ["material file \"gone.mtl\" is missing", "1 lines with unknown statements left out"]
-        );
+        assert_eq!(mesh.warnings, ["material file \"gone.mtl\" is missing", "1 unknown statement left out"]);
     }
 }

@@ -3,6 +3,7 @@
 //! Convex polygons are cut as a fan, others by ear clipping (Meisters 1975) in the plane of their mean normal (Newell).
 //! Limits: polygons that cross themselves have no right answer, and are cut as far as ears are found.
 
+use crate::scene::input::counted;
 use glam::DVec3;
 
 /// Most tests of a corner against an ear for one polygon; some tenths of a second. Beyond, the rest becomes a fan.
@@ -17,6 +18,11 @@ pub enum Cut {
     TooFewCorners,
     /// It crosses itself or is too tangled: the rest became a fan.
     Crossing,
+}
+
+/// The warning for so many polygons that were cut up as far as possible.
+pub fn tangled(count: usize) -> String {
+    format!("{} cut up as far as possible: crossing or too tangled", counted(count, "polygon"))
 }
 
 /// Appends the triangles of the polygon with `corners` (numbers into `positions`, which must hold them) to `triangles`,
