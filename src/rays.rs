@@ -100,7 +100,9 @@ impl Rays {
         for triangle in 0..scene.mesh.triangles.len() {
             let material =
                 scene.mesh.material_of.get(triangle).and_then(|&number| scene.materials.get(number as usize));
-            let transmittance = material.map_or(0.0, |material| material.transmittance);
+            // Emissive faces are lights, and those are opaque.
+            let glazing = material.filter(|material| material.emission_w_m2_sr <= 0.0);
+            let transmittance = glazing.map_or(0.0, |material| material.transmittance);
             if let Some(corners_m) = scene.mesh.corners_m(triangle) {
                 parts.push((Body::Triangle(corners_m), Surface::Triangle(triangle as u32), transmittance));
             }

@@ -1,8 +1,8 @@
 //! What shines in a scene, and from where?
 //!
 //! The lights of the scene file come first, then the emissive faces of the mesh, joined into patches: triangles of one
-//! material that share a corner position. A patch emits on its front side alone, like a quad light; its flux is
-//! `pi L A`.
+//! material that share a corner position. A patch emits on its front side alone and reflects nothing, like a quad light;
+//! its flux is `pi L A`.
 
 use super::{Emitter, Shape, Sources};
 use crate::rays::{Rays, Surface};

@@ -93,7 +93,8 @@ pub struct Material {
     pub reflectance: f32,
     /// Share of the light passed straight on, 0 to 1; above 0 it is thin glazing and not solid.
     pub transmittance: f32,
-    /// Radiance given off on the front side, W/m2/sr.
+    /// Radiance given off on the front side, W/m2/sr. Above 0 the face is a light: opaque and black on both sides,
+    /// whatever its other shares.
     pub emission_w_m2_sr: f32,
 }
 

@@ -46,7 +46,7 @@ pub struct Traced {
 ///
 /// `rays` and `sources` are those of `scene`. Runs on the current rayon pool; any number of threads gives the same bits.
 /// The stage is "trace", its unit 128 samples. A sensor inside a sphere light is [`Status::InSolid`]; one that no sample
-/// found light for is [`Status::Dark`].
+/// found light for is [`Status::Dark`]; a warning says that this is no proof.
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised; it is looked at every 128 samples.
@@ -182,6 +182,10 @@ fn warnings(scene: &Scene, standings: &[Standing], top_share: &[f64]) -> Vec<Str
     let kinds = [
         named(&|at| standings[at] == Standing::InLight, "inside a sphere light"),
         named(&|at| standings[at] == Standing::OnPoint, "on a point light, whose infinite direct light is left out"),
+        named(
+            &|at| standings[at] == Standing::Free && top_share[at] <= 0.0,
+            "no sample found light; dark, or very nearly",
+        ),
         named(
             &|at| top_share[at] > LARGEST_TRUSTED_SHARE,
             "one sample is over 5% of the sum, so that the standard error is not to be trusted",

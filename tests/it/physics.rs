@@ -156,6 +156,17 @@ fn a_rectangle_over_its_corner_has_its_form_factor_as_a_light_and_as_faces() {
 }
 
 #[test]
+fn emissive_faces_reflect_nothing_and_let_nothing_through() {
+    let mut mesh = Mesh::default();
+    quad(&mut mesh, 0, Vec3::new(-1.0, -1.0, 1.0), Vec3::Y * 2.0, Vec3::X * 2.0);
+    let sensors = vec![sensor(Vec3::Z * 2.0, Some(Vec3::NEG_Z))];
+    let mut scene = scene_of(mesh, 0.9, vec![point(Vec3::Z * 3.0, 100.0), point(Vec3::ZERO, 100.0)], sensors);
+    assert_eq!(readings(&scene, 64)[0].status, Status::Ok);
+    scene.materials = vec![Material { transmittance: 0.1, emission_w_m2_sr: 10.0, ..grey(0.9) }];
+    assert_eq!(readings(&scene, 64)[0].status, Status::Dark);
+}
+
+#[test]
 fn an_integrating_sphere_adds_the_same_everywhere() {
     let (mesh, flux_w) = (ball(2.0, 32), 50.0);
     let area_m2 = area_m2(&mesh);
