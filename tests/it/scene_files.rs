@@ -205,3 +205,91 @@ fn the_duplex_the_cabin_and_the_quake_maps_load() {
         eprintln!("Den Haag: {} triangles, {:?}", scene.mesh.triangles.len(), scene.warnings);
     }
 }
+
+/// Corners of all triangles as another crate reads them, rounded as that crate does.
+type Soup = Vec<[[f32; 3]; 3]>;
+
+fn soup_of(mesh: &lightvein::scene::read::RawMesh) -> Soup {
+    let corner = |vertex: u32| mesh.positions[vertex as usize].as_vec3().to_array();
+    mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect()
+}
+
+fn read_alone(path: &Path) -> lightvein::scene::read::RawMesh {
+    let bytes = std::fs::read(path).expect("a mesh");
+    let cancel = Cancel::new();
+    let input = lightvein::scene::input::Input::alone(&bytes, path, &Quiet, &cancel);
+    let format = lightvein::scene::read::Format::of(path).expect("a mesh");
+    format.read(&input).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn sound(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad_input/sound").join(file)
+}
+
+#[test]
+fn obj_is_read_as_tobj_reads_it() {
+    let real = ["cornell/CornellBox-Original.obj", "duplex/duplex_structure.obj", "cabin/cabin_furnished_opaque.obj"];
+    let files = real.into_iter().filter_map(self::real).chain([sound("box.obj")]);
+    for path in files {
+        let options = tobj::LoadOptions { triangulate: true, single_index: false, ..Default::default() };
+        // Without materials: a colour of one component makes tobj 4.0 panic.
+        // It also knows neither an empty usemtl nor lines that go on.
+        let text = std::fs::read_to_string(&path).expect("a mesh");
+        let text = text.replace("usemtl\n", "usemtl none\n").replace("\\\n", "");
+        let mut file = text.as_bytes();
+        let (models, _) =
+            tobj::load_obj_buf(&mut file, &options, |_| Err(tobj::LoadError::GenericFailure)).expect("tobj");
+        let mut theirs = Soup::new();
+        for mesh in models.iter().map(|model| &model.mesh) {
+            let corner = |vertex: u32| [0, 1, 2].map(|axis| mesh.positions[3 * vertex as usize + axis]);
+            theirs.extend(mesh.indices.chunks_exact(3).map(|t| [corner(t[0]), corner(t[1]), corner(t[2])]));
+        }
+        assert_eq!(soup_of(&read_alone(&path)), theirs, "{}", path.display());
+    }
+}
+
+#[test]
+fn stl_is_read_as_stl_io_reads_it() {
+    for path in [sound("box.stl"), sound("box_binary.stl")] {
+        let mut file = std::fs::File::open(&path).expect("a mesh");
+        let theirs = stl_io::create_stl_reader(&mut file).expect("stl_io reads it");
+        let theirs: Soup = theirs.map(|triangle| triangle.expect("a triangle").vertices.map(|v| v.0)).collect();
+        assert_eq!(soup_of(&read_alone(&path)), theirs, "{}", path.display());
+    }
+}
+
+#[test]
+fn ply_is_read_as_ply_rs_reads_it() {
+    use ply_rs_bw::ply::{DefaultElement, Property};
+    for path in [sound("box.ply"), sound("box_little.ply"), sound("box_big.ply")] {
+        let mut file = std::fs::File::open(&path).expect("a mesh");
+        let parser = ply_rs_bw::parser::Parser::<DefaultElement>::new();
+        let ply = parser.read_ply(&mut file).expect("ply-rs-bw reads it");
+        let coordinate = |vertex: &DefaultElement, axis: &str| match vertex.get(axis) {
+            Some(Property::Float(value)) => *value,
+            other => panic!("{other:?}"),
+        };
+        let vertices: Vec<[f32; 3]> =
+            ply.payload["vertex"].iter().map(|vertex| ["x", "y", "z"].map(|axis| coordinate(vertex, axis))).collect();
+        let mut theirs = Soup::new();
+        for face in &ply.payload["face"] {
+            let Some(Property::ListInt(corners)) = face.get("vertex_indices") else { panic!("{face:?}") };
+            let at = |corner: usize| vertices[corners[corner] as usize];
+            theirs.extend((2..corners.len()).map(|last| [at(0), at(last - 1), at(last)]));
+        }
+        assert_eq!(soup_of(&read_alone(&path)), theirs, "{}", path.display());
+    }
+}
+
+#[test]
+fn all_formats_give_the_same_box() {
+    let cancel = Cancel::new();
+    let volume = |file: &str| {
+        let scene = Scene::load(&sound(file), &Quiet, &cancel).unwrap_or_else(|error| panic!("{error}"));
+        let corners = (0..scene.mesh.triangles.len()).filter_map(|triangle| scene.mesh.corners_m(triangle));
+        corners.map(|[a, b, c]| a.cross(b).dot(c) / 6.0).sum::<f32>()
+    };
+    for file in ["box.ply", "box_little.ply", "box_big.ply", "box.stl", "box_binary.stl", "box.gltf", "box.glb"] {
+        assert!((volume(file) - 24.0).abs() < 1e-4, "{file}: {}", volume(file));
+    }
+}

@@ -285,7 +285,7 @@ mod tests {
             "accessor 0 needs 48 bytes",
         );
         fails(&good.replace("\"byteLength\":6", "\"byteLength\":600"), "buffer view 1 needs 636 bytes, 42 are left");
-        fails(&good.replace("AAABAAIA", "AAABAAkA"), "a face uses vertex 9, but there are 3");
+        fails(&good.replace("AAABAAIA", "AAABAAkA"), "accessor 1 uses vertex 9, but there are 3");
         fails(&good.replace("AACAPw", "AADAfw"), "vertex 1 of accessor 0 NaN is not a finite number");
         fails(&good.replace("0.5,0.5,0.5", "2,2,2"), "material 0: luminance of baseColorFactor 2.0 is outside 0 to 1");
         fails(&good.replace("\"mesh\":0", "\"mesh\":5"), "glTF: nodes[0].mesh");
