@@ -3,5 +3,6 @@
 #![warn(missing_docs)]
 
 pub mod job;
+pub mod skeleton;
 pub mod space;
 pub mod voxel;
