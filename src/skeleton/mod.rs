@@ -1,7 +1,57 @@
 //! Where does the void run?
 //!
-//! The void is thinned to curves in the middle of its passages and rooms, with the same topology.
+//! The void is thinned to curves in the middle of its passages and rooms, with as many pieces and loops as it has. Steps,
+//! each in its file: the cubical complex of the void; ties for floating solids, which could only be surrounded by a
+//! surface; anchors in the middles of rooms; the collapse; branches that say nothing cut, dead ends grown to their walls.
+//! Passages under two voxels may be lost before this, when the scene is made into voxels, not here.
 
 pub mod anchors;
 pub mod collapse;
 pub mod complex;
+pub mod curve;
+pub mod prune;
+pub mod tie;
+pub mod topology;
+
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::voxel::bits::BitGrid;
+use crate::voxel::chessboard::Chessboard;
+use crate::voxel::opening;
+use complex::Complex;
+use curve::Curve;
+
+/// Thins a void (outside the grid all is matter) to its centre lines. They have as many components and loops as the void,
+/// no surface, and at least one vertex for each component; an empty void gives an empty curve. The same for any number of
+/// threads.
+///
+/// Stages reported: `distance`, `opening`, `complex`, `ties`, `anchors`, `collapse` (a unit a layer), `prune`.
+/// Memory: about 4 bytes a voxel. Time: about 10 ns a voxel on two threads.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn thin(void: &BitGrid, progress: &dyn Progress, cancel: &Cancel) -> Result<Curve, Cancelled> {
+    let board = staged(progress, "distance", || Chessboard::new(void, cancel))?;
+    let opening = staged(progress, "opening", || opening::opening(void, &board, cancel))?;
+    let mut complex = staged(progress, "complex", || Complex::closure(void));
+    staged(progress, "ties", || tie::tie(&mut complex, void, cancel))?;
+    let anchors = staged(progress, "anchors", || anchors::anchors(void, &board));
+    staged(progress, "collapse", || {
+        collapse::collapse(&mut complex, &board.distance, &opening, &anchors, progress, cancel)
+    })?;
+    Ok(staged(progress, "prune", || {
+        let mut curve = Curve::new(&complex, &anchors, board.distance, opening);
+        prune::prune(&mut curve);
+        prune::regrow(&mut curve);
+        curve
+    }))
+}
+
+fn staged<T>(progress: &dyn Progress, stage: &'static str, work: impl FnOnce() -> T) -> T {
+    progress.begin(stage, 0);
+    let done = work();
+    progress.end();
+    done
+}
+
+#[cfg(test)]
+mod tests;

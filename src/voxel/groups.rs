@@ -49,6 +49,33 @@ pub fn take(left: &mut BitGrid, seeds: impl IntoIterator<Item = (usize, u64)>, n
     merge(group)
 }
 
+/// Takes out of a set all that hangs together by shared faces with some of its voxels, and forgets it: faster than
+/// [`take`] where that is most of the set.
+pub fn remove(left: &mut BitGrid, seeds: Vec<(usize, u64)>) {
+    let [across, rows, planes] = left.bricks();
+    let strides = [1, across, across * rows];
+    let mut fronts = seeds;
+    while let Some((brick, seed)) = fronts.pop() {
+        let mask = left.words()[brick];
+        let flooded = brick::flood_six(seed, mask);
+        if flooded == 0 {
+            continue;
+        }
+        left.words_mut()[brick] = mask & !flooded;
+        let at = left.brick_at(brick);
+        let up = [from_below::<0>(0, flooded), from_below::<1>(0, flooded), from_below::<2>(0, flooded)];
+        let down = [from_above::<0>(0, flooded), from_above::<1>(0, flooded), from_above::<2>(0, flooded)];
+        for (axis, bricks) in [across, rows, planes].into_iter().enumerate() {
+            if at[axis] > 0 && down[axis] & left.words()[brick - strides[axis]] != 0 {
+                fronts.push((brick - strides[axis], down[axis]));
+            }
+            if at[axis] + 1 < bricks && up[axis] & left.words()[brick + strides[axis]] != 0 {
+                fronts.push((brick + strides[axis], up[axis]));
+            }
+        }
+    }
+}
+
 /// All voxels of other bricks, and of its own, that touch a group: the group itself is left out.
 pub fn around(bricks: [usize; 3], group: &[(u32, u64)]) -> Group {
     let mut around = Group::new();
