@@ -106,7 +106,7 @@ impl Skeleton {
     ///
     /// # Errors
     /// [`Cancelled`] when `cancel` was raised.
-    pub fn build(
+    pub fn build_from(
         lattice: Lattice,
         void: &BitGrid,
         rays: &Rays,

@@ -5,6 +5,7 @@
 pub mod bits;
 pub mod brick;
 pub mod chessboard;
+pub mod groups;
 pub mod levels;
 pub mod morphology;
 pub mod opening;
