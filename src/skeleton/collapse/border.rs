@@ -44,17 +44,23 @@ impl Border {
             let (begin, early) = (**begin, **begin - copy.len());
             for brick in part(candidates, early..begin).iter().map(|brick| *brick as usize) {
                 let bare = bare_edges(cells, brick, layout.stride);
-                let lower = layout.stride.map(|stride| brick.checked_sub(stride + early).map_or([0; 8], |at| copy[at]));
-                copy[brick - early] = border_of(cells, brick, layout.stride, lower, bare);
+                let lower =
+                    |axis: usize| copy.get((brick - layout.stride[axis]).wrapping_sub(early)).unwrap_or(&[0; 8]);
+                let found = border_of(cells, brick, layout.stride, [lower(0), lower(1), lower(2)], bare);
+                copy[brick - early] = found;
             }
             let mut births = Vec::new();
             for brick in part(candidates, begin..begin + own.len()).iter().map(|brick| *brick as usize) {
                 let bare = bare_edges(cells, brick, layout.stride);
-                let lower = layout.stride.map(|stride| {
-                    let below = brick - stride;
-                    if below >= begin { own[below - begin] } else { copy[below - early] }
-                });
-                own[brick - begin] = border_of(cells, brick, layout.stride, lower, bare);
+                let lower = |axis: usize| {
+                    let below = brick - layout.stride[axis];
+                    if below >= begin { &own[below - begin] } else { &copy[below - early] }
+                };
+                let found = border_of(cells, brick, layout.stride, [lower(0), lower(1), lower(2)], bare);
+                own[brick - begin] = found;
+                if bare[0] | bare[1] | bare[2] == 0 {
+                    continue;
+                }
                 for (axis, born) in born[brick - begin].iter_mut().enumerate() {
                     births.extend(brick::ones(bare[axis] & !*born).map(|bit| (brick as u32, axis, bit)));
                     *born |= bare[axis];
@@ -74,8 +80,8 @@ impl Border {
 }
 
 /// The border in a brick; `lower` is that in the bricks below it along x, y, z, `bare` its edges without a face.
-#[inline]
-fn border_of(cells: &[Cells], brick: usize, stride: [usize; 3], lower: [Cells; 3], bare: [u64; 3]) -> Cells {
+#[inline(always)]
+fn border_of(cells: &[Cells], brick: usize, stride: [usize; 3], lower: [&Cells; 3], bare: [u64; 3]) -> Cells {
     let here = cells[brick][CUBES];
     let near = |brick: usize| cells[brick][CUBES];
     let cubes = here
@@ -98,23 +104,32 @@ fn border_of(cells: &[Cells], brick: usize, stride: [usize; 3], lower: [Cells; 3
 }
 
 /// The edges along x, y, z of a brick without a face.
+#[inline(always)]
 fn bare_edges(cells: &[Cells], brick: usize, stride: [usize; 3]) -> [u64; 3] {
-    let (here, near) = (&cells[brick], stride.map(|stride| &cells[brick - stride]));
+    let here = &cells[brick];
+    // Most bricks have no edge without a face in them alone; then those beside need no look.
+    let alone = [here[1] & !(here[3] | here[5]), here[2] & !(here[6] | here[3]), here[4] & !(here[5] | here[6])];
+    if alone == [0; 3] {
+        return alone;
+    }
+    let (x, y, z) = (&cells[brick - stride[0]], &cells[brick - stride[1]], &cells[brick - stride[2]]);
     [
-        here[1] & !(here[3] | here[5] | from_below::<1>(here[3], near[1][3]) | from_below::<2>(here[5], near[2][5])),
-        here[2] & !(here[6] | here[3] | from_below::<2>(here[6], near[2][6]) | from_below::<0>(here[3], near[0][3])),
-        here[4] & !(here[5] | here[6] | from_below::<0>(here[5], near[0][5]) | from_below::<1>(here[6], near[1][6])),
+        alone[0] & !(from_below::<1>(here[3], y[3]) | from_below::<2>(here[5], z[5])),
+        alone[1] & !(from_below::<2>(here[6], z[6]) | from_below::<0>(here[3], x[3])),
+        alone[2] & !(from_below::<0>(here[5], x[5]) | from_below::<1>(here[6], y[6])),
     ]
 }
 
 /// The faces across x, y, z of a brick that have an edge to themselves.
+#[inline(always)]
 fn free_faces(cells: &[Cells], brick: usize, stride: [usize; 3]) -> [u64; 3] {
-    let (cubes, near) = (cells[brick][CUBES], stride.map(|stride| cells[brick - stride][CUBES]));
+    let cubes = cells[brick][CUBES];
+    let near = |axis: usize| cells[brick - stride[axis]][CUBES];
     // A face with a cube shares each of its edges with another face of the cube.
     let bare = [
-        cells[brick][across(0)] & !cubes & !from_below::<0>(cubes, near[0]),
-        cells[brick][across(1)] & !cubes & !from_below::<1>(cubes, near[1]),
-        cells[brick][across(2)] & !cubes & !from_below::<2>(cubes, near[2]),
+        cells[brick][across(0)] & !cubes & !from_below::<0>(cubes, near(0)),
+        cells[brick][across(1)] & !cubes & !from_below::<1>(cubes, near(1)),
+        cells[brick][across(2)] & !cubes & !from_below::<2>(cubes, near(2)),
     ];
     [
         if bare[0] == 0 { 0 } else { bare[0] & with_own_edge::<0, 1, 2>(cells, brick, stride) },
@@ -124,6 +139,7 @@ fn free_faces(cells: &[Cells], brick: usize, stride: [usize; 3]) -> [u64; 3] {
 }
 
 /// Where a face across axis `N` would have an edge that bounds nothing else; `A` and `B` are the axes it spans.
+#[inline(never)]
 fn with_own_edge<const N: usize, const A: usize, const B: usize>(
     cells: &[Cells],
     brick: usize,
@@ -147,6 +163,7 @@ fn with_own_edge<const N: usize, const A: usize, const B: usize>(
 }
 
 /// The edges along x, y, z of a brick that have a point to themselves, from those without a face.
+#[inline(always)]
 fn free_edges(cells: &[Cells], brick: usize, stride: [usize; 3], bare: [u64; 3]) -> [u64; 3] {
     [
         if bare[0] == 0 { 0 } else { bare[0] & with_own_point::<0, 1, 2>(cells, brick, stride) },
@@ -156,6 +173,7 @@ fn free_edges(cells: &[Cells], brick: usize, stride: [usize; 3], bare: [u64; 3])
 }
 
 /// Where an edge along axis `A` would have a point that bounds nothing else.
+#[inline(never)]
 fn with_own_point<const A: usize, const B: usize, const C: usize>(
     cells: &[Cells],
     brick: usize,

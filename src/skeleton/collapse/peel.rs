@@ -179,7 +179,7 @@ impl Pass<'_> {
             exposed(here, lower, across(B)),
             exposed(here, lower, 1 << A),
         ];
-        if free == [0; 4] {
+        if free[0] | free[1] | free[2] | free[3] == 0 {
             return;
         }
         let here = *here;
@@ -212,7 +212,12 @@ impl Pass<'_> {
             return;
         }
 
-        let large = [(CUBES, faces), (across(C), edges[0]), (across(B), edges[1]), (1 << A, points)];
+        let take_large = |cells: &mut Cells, place: fn(u64) -> u64| {
+            cells[CUBES] &= !place(faces);
+            cells[across(C)] &= !place(edges[0]);
+            cells[across(B)] &= !place(edges[1]);
+            cells[1 << A] &= !place(points);
+        };
         let (cells, changed) = slab.at_mut(brick);
         cells[across(A)] &= !faces;
         cells[1 << B] &= !edges[0];
@@ -220,14 +225,14 @@ impl Pass<'_> {
         cells[0] &= !points;
         *changed |= any;
         match side {
-            Side::Low => large.iter().for_each(|(plane, taken)| cells[*plane] &= !taken),
+            Side::Low => take_large(cells, |taken| taken),
             Side::High => {
-                large.iter().for_each(|(plane, taken)| cells[*plane] &= !from_above::<A>(*taken, 0));
+                take_large(cells, |taken| from_above::<A>(taken, 0));
                 *changed |= from_above::<A>(any, 0);
                 let entered = from_above::<A>(0, any);
                 if entered != 0 {
                     let (cells, changed) = slab.at_mut(below);
-                    large.iter().for_each(|(plane, taken)| cells[*plane] &= !from_above::<A>(0, *taken));
+                    take_large(cells, |taken| from_above::<A>(0, taken));
                     *changed |= entered;
                 }
             }
