@@ -21,6 +21,11 @@ pub type Cells = [u64; 8];
 /// The plane of cubes in [`Cells`].
 pub const CUBES: usize = 7;
 
+/// The plane of faces across an axis.
+pub const fn across(axis: usize) -> usize {
+    CUBES ^ 1 << axis
+}
+
 /// A cubical complex.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Complex {

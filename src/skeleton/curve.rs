@@ -4,6 +4,7 @@ use super::complex::Complex;
 use crate::voxel::brick;
 use crate::voxel::levels::Levels;
 use glam::IVec3;
+use std::collections::BTreeSet;
 
 /// A void's centre lines: a graph on the lattice of voxel corners.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,33 +52,53 @@ impl Curve {
                 starts.map(move |corner| [corner, corner + IVec3::AXES[axis]])
             })
         });
+        let held: BTreeSet<[i32; 3]> = anchors.iter().map(|corner| corner.to_array()).collect();
         let mut curve = Self { vertices: Vec::new(), edges: Vec::new(), distance, opening };
-        curve.rebuild(points.collect(), steps.collect(), |corner| anchors.contains(&corner));
+        curve.vertices = points.map(|corner| curve.vertex(corner, held.contains(&corner.to_array()))).collect();
+        curve.vertices.sort_unstable_by_key(|vertex| rank(&vertex.corner));
+        let number = |corner: IVec3| curve.vertex_at(corner).unwrap_or_default();
+        let mut edges: Vec<[u32; 2]> = steps.map(|[low, high]| [number(low), number(high)]).collect();
+        edges.sort_unstable();
+        curve.edges = edges;
         curve
     }
 
-    /// Replaces all vertices and edges, given by their corners in any order, each once.
-    pub(super) fn rebuild(
-        &mut self,
-        mut points: Vec<IVec3>,
-        steps: Vec<[IVec3; 2]>,
-        is_anchor: impl Fn(IVec3) -> bool,
-    ) {
-        points.sort_unstable_by_key(rank);
-        let number = |corner: &IVec3| points.binary_search_by_key(&rank(corner), rank).map_or(0, |at| at as u32);
-        let mut edges: Vec<[u32; 2]> =
-            steps.iter().map(|[a, b]| [number(a), number(b)]).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        edges.sort_unstable();
-        self.edges = edges;
-        self.vertices = points
-            .into_iter()
-            .map(|corner| Vertex {
-                corner,
-                distance: self.distance.at_corner(corner),
-                opening: self.opening.at_corner(corner),
-                anchor: is_anchor(corner),
+    /// The vertex that a corner would be.
+    pub(super) fn vertex(&self, corner: IVec3, anchor: bool) -> Vertex {
+        Vertex { corner, distance: self.distance.at_corner(corner), opening: self.opening.at_corner(corner), anchor }
+    }
+
+    /// Leaves out vertices, and edges at them.
+    pub(super) fn retain(&mut self, stays: &[bool]) {
+        let mut left = 0;
+        let numbers: Vec<Option<u32>> = stays
+            .iter()
+            .map(|stays| {
+                left += u32::from(*stays);
+                stays.then(|| left - 1)
             })
             .collect();
+        let renumbered = |[a, b]: &[u32; 2]| Some([numbers[*a as usize]?, numbers[*b as usize]?]);
+        self.edges = self.edges.iter().filter_map(renumbered).collect();
+        let mut stays = stays.iter();
+        self.vertices.retain(|_| stays.next().is_some_and(|stays| *stays));
+    }
+
+    /// Adds vertices, each with the number of the one it joins; an added one has the number after those before it.
+    pub(super) fn extend(&mut self, grown: &[(Vertex, u32)]) {
+        let edges = (self.vertices.len() as u32..).zip(grown).map(|(number, (_, from))| [*from, number]);
+        self.edges.extend(edges);
+        self.vertices.extend(grown.iter().map(|(vertex, _)| *vertex));
+        let mut order: Vec<u32> = (0..self.vertices.len() as u32).collect();
+        order.sort_unstable_by_key(|number| rank(&self.vertices[*number as usize].corner));
+        let mut places = vec![0; order.len()];
+        (0_u32..).zip(&order).for_each(|(place, number)| places[*number as usize] = place);
+        self.vertices = order.iter().map(|number| self.vertices[*number as usize]).collect();
+        for edge in &mut self.edges {
+            *edge = edge.map(|number| places[number as usize]);
+            edge.sort_unstable();
+        }
+        self.edges.sort_unstable();
     }
 
     /// The number of the vertex on a corner, if there is one.

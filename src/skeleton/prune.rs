@@ -7,7 +7,7 @@
 //! on for as long as the void stays about as wide.
 //! Both only take or add dead ends, so the topology stays.
 
-use super::curve::Curve;
+use super::curve::{Curve, Vertex};
 use glam::{IVec3, Vec3};
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -15,7 +15,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 /// Cuts branches that stay inside the ball of the junction they leave. Anchors stay, and branches end at them.
 pub fn prune(curve: &mut Curve) {
     let mut near = curve.neighbours();
-    let mut gone = vec![false; curve.vertices.len()];
+    let mut stays = vec![true; curve.vertices.len()];
     let tips = |near: &[Vec<u32>]| -> Vec<u32> {
         let is_tip = |vertex: &u32| near[*vertex as usize].len() == 1 && !curve.vertices[*vertex as usize].anchor;
         (0..near.len() as u32).filter(is_tip).collect()
@@ -38,7 +38,7 @@ pub fn prune(curve: &mut Curve) {
                 continue;
             }
             for vertex in &path[..path.len() - 1] {
-                gone[*vertex as usize] = true;
+                stays[*vertex as usize] = false;
                 near[*vertex as usize].clear();
             }
             near[junction as usize].retain(|vertex| *vertex != last);
@@ -49,21 +49,15 @@ pub fn prune(curve: &mut Curve) {
         }
     }
 
-    let corner = |vertex: u32| curve.vertices[vertex as usize].corner;
-    let points = (0..gone.len() as u32).filter(|vertex| !gone[*vertex as usize]).map(corner).collect();
-    let stays = |[a, b]: &&[u32; 2]| !gone[*a as usize] && !gone[*b as usize];
-    let steps = curve.edges.iter().filter(stays).map(|[a, b]| [corner(*a), corner(*b)]).collect();
-    replace(curve, points, steps);
+    curve.retain(&stays);
 }
 
 /// Grows each dead end straight on, to where the void gets narrower than it was by more than one voxel, or another line
 /// runs.
 pub fn regrow(curve: &mut Curve) {
     let near = curve.neighbours();
-    let mut taken: BTreeSet<[i32; 3]> = curve.vertices.iter().map(|vertex| vertex.corner.to_array()).collect();
-    let mut points: Vec<IVec3> = curve.vertices.iter().map(|vertex| vertex.corner).collect();
-    let corner = |vertex: u32| curve.vertices[vertex as usize].corner;
-    let mut steps: Vec<[IVec3; 2]> = curve.edges.iter().map(|[a, b]| [corner(*a), corner(*b)]).collect();
+    let mut taken = BTreeSet::new();
+    let mut grown: Vec<(Vertex, u32)> = Vec::new();
     for (tip, vertex) in curve.vertices.iter().enumerate() {
         if near[tip].len() != 1 || vertex.anchor {
             continue;
@@ -71,8 +65,8 @@ pub fn regrow(curve: &mut Curve) {
         // The heading: from as far back as the passage is wide.
         let path = branch(curve, &near, tip as u32);
         let back = path[path.len().min(2 * usize::from(vertex.distance) + 1) - 1];
-        let ahead = (vertex.corner - corner(back)).as_vec3();
-        let mut at = vertex.corner;
+        let ahead = (vertex.corner - curve.vertices[back as usize].corner).as_vec3();
+        let (mut at, mut number) = (vertex.corner, tip as u32);
         loop {
             // Of the steps that do not lead back, the one that stays closest to the line.
             let axes = (0..3).filter(|axis| ahead[*axis] != 0.0);
@@ -80,21 +74,14 @@ pub fn regrow(curve: &mut Curve) {
             let open = candidates.filter(|next| is_open(curve, at, *next, vertex.distance));
             let aside = |next: &IVec3| off_line((*next - vertex.corner).as_vec3(), ahead);
             let Some(next) = open.min_by(|a, b| aside(a).total_cmp(&aside(b))) else { break };
-            if !taken.insert(next.to_array()) {
+            if curve.vertex_at(next).is_some() || !taken.insert(next.to_array()) {
                 break;
             }
-            points.push(next);
-            steps.push([at, next]);
-            at = next;
+            grown.push((curve.vertex(next, false), number));
+            (at, number) = (next, (curve.vertices.len() + grown.len() - 1) as u32);
         }
     }
-    replace(curve, points, steps);
-}
-
-fn replace(curve: &mut Curve, points: Vec<IVec3>, steps: Vec<[IVec3; 2]>) {
-    let anchors: BTreeSet<[i32; 3]> =
-        curve.vertices.iter().filter(|vertex| vertex.anchor).map(|vertex| vertex.corner.to_array()).collect();
-    curve.rebuild(points, steps, |corner| anchors.contains(&corner.to_array()));
+    curve.extend(&grown);
 }
 
 /// The vertices from a tip to the next junction, anchor or end, all included.
