@@ -4,7 +4,7 @@
 //! ([`VoxelIndex`]). Voxel `(i, j, k)` fills the half-open box from `origin_m + voxel_m * (i, j, k)` to one voxel further;
 //! its centre is half a voxel in. Corners of voxels are lattice points, numbered like the voxel above and beyond them.
 
-use glam::{IVec3, Vec3};
+use glam::{DVec3, IVec3, Vec3};
 
 /// A voxel by its integer position in a [`Lattice`]; it may lie outside the grid, where everything is solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -56,6 +56,11 @@ impl Lattice {
     /// A point in units of voxels, measured from the grid's lowest corner.
     pub fn point_in_grid(&self, point_m: Vec3) -> Vec3 {
         (point_m - self.origin_m) / self.voxel_m
+    }
+
+    /// The same as [`Lattice::point_in_grid`] without the rounding of `f32`, for tests that must not lose an overlap.
+    pub fn point_in_grid_exact(&self, point_m: Vec3) -> DVec3 {
+        (point_m.as_dvec3() - self.origin_m.as_dvec3()) / f64::from(self.voxel_m)
     }
 
     /// Whether the voxel lies inside the grid.
