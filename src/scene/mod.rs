@@ -3,9 +3,23 @@
 //! After loading, everything is in metres, Z up, +Y north, +X east, and recentred: positions are relative to
 //! [`Scene::origin_m`], so that city coordinates keep their millimetres in `f32`. Whoever writes a position to a file
 //! adds the origin back ([`Scene::to_user_m`]).
+//!
+//! In a scene file `unit_m` and `up` describe the mesh files alone: lights and sensors are in metres, Z up, as the mesh is
+//! after loading. The user's format is described in `docs/scene-file.md`.
+
+pub mod error;
+pub mod file;
+pub mod input;
+mod load;
+mod merge;
+pub mod read;
+pub mod reference;
+pub mod sensors;
 
 use glam::{DVec3, Vec3};
 use std::path::PathBuf;
+
+pub use error::{Kind, SceneError};
 
 /// One scene, ready to be voxelised and traced.
 #[derive(Debug, Clone, Default)]
@@ -28,6 +42,8 @@ pub struct Scene {
     pub model: ModelChoice,
     /// The file's `[site]`.
     pub site: Option<Site>,
+    /// Whether a mesh was loaded without a scene file: lights and sensors are not missing but were never asked for.
+    pub bare: bool,
     /// What loading had to mend or leave out, counted, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -71,7 +87,7 @@ impl Mesh {
 /// How a surface answers light: Lambertian on both sides, one broadband channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// The mesh's name for it; empty for faces without one.
+    /// The mesh's name for it; for faces without a material, the name of their object, group or file.
     pub name: String,
     /// Share of the light reflected diffusely, 0 to 1 (of a colour: its Rec. 709 luminance).
     pub reflectance: f32,

@@ -47,6 +47,13 @@ pub struct Node {
     pub cell: u32,
 }
 
+impl Node {
+    /// Distance over opening: 1 at the centre of a maximal ball, less off it.
+    pub fn saliency(&self) -> f32 {
+        f32::from(self.distance_voxels) / f32::from(self.opening_voxels.max(1))
+    }
+}
+
 /// A step of the skeleton.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
