@@ -261,3 +261,6 @@ fn flood(widths: &Widths, at: &[f32], region_of: &[u32]) -> Vec<u32> {
     }
     cell_of
 }
+
+#[cfg(test)]
+mod tests;

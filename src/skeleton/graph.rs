@@ -47,6 +47,13 @@ pub struct Node {
     pub cell: u32,
 }
 
+impl Node {
+    /// Distance over opening: 1 at the centre of a maximal ball, less off it.
+    pub fn saliency(&self) -> f32 {
+        f32::from(self.distance_voxels) / f32::from(self.opening_voxels.max(1))
+    }
+}
+
 /// A step of the skeleton.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
@@ -113,7 +120,7 @@ impl Skeleton {
     ///
     /// # Errors
     /// [`Cancelled`] when `cancel` was raised.
-    pub fn build(
+    pub fn build_from(
         lattice: Lattice,
         void: &BitGrid,
         rays: &Rays,

@@ -62,64 +62,58 @@ impl Matter<'_> {
 
     /// Euclidean distance from a lattice corner to the nearest matter, metres.
     ///
-    /// The nearest voxel that is not void is found exactly; matter runs through its middle on average. A ray towards it
-    /// finds the surface itself, and its distance square to that surface is taken where the two agree to a voxel.
+    /// The nearest voxel that is not void is found exactly; matter stands half a voxel behind its face on average. A ray
+    /// towards it finds the surface itself, and the distance square to that surface is taken where the two agree to a
+    /// voxel.
     pub fn radius_m(&self, corner: IVec3) -> f32 {
         let voxel_m = self.lattice.voxel_m;
-        let to = self.to_matter(corner);
-        let rough = to.length();
-        let Some(direction) = to.try_normalize() else { return 0.5 * voxel_m };
+        let gap = self.gap(corner);
+        let rough = gap.length() + 0.5;
+        let Some(direction) = gap.try_normalize() else { return rough * voxel_m };
         let hit = self.rays.closest(self.lattice.corner_m(corner), direction, (rough + 1.0) * voxel_m);
         let exact = hit.map(|hit| hit.distance_m * direction.dot(hit.normal).abs() / voxel_m);
         exact.filter(|exact| (exact - rough).abs() < 1.0).unwrap_or(rough) * voxel_m
     }
 
-    /// From a lattice corner to the centre of the nearest voxel that is not void, in voxels; of equally near ones the
-    /// first in the order of bricks. Outside the grid nothing is void.
-    fn to_matter(&self, corner: IVec3) -> Vec3 {
+    /// From a lattice corner straight to the nearest voxel that is not void, in voxels; to the first in the order of
+    /// bricks of equally near ones. Outside the grid nothing is void.
+    fn gap(&self, corner: IVec3) -> Vec3 {
         let size = IVec3::from_array(self.void.size().map(|along| along as i32));
         let bricks = self.void.bricks();
-        // In half voxels, whole numbers: ties are then ties.
-        let mut best = -IVec3::X * (2 * corner.x + 1);
-        let border = [IVec3::X, IVec3::Y, IVec3::Z]
-            .into_iter()
-            .flat_map(|axis| [-axis * (2 * corner + 1), axis * (2 * (size - corner) + 1)]);
-        for to in border {
-            if to.length_squared() < best.length_squared() {
-                best = to;
-            }
-        }
+        let axes = IVec3::AXES.into_iter();
+        let borders = axes.flat_map(|axis| [-axis * corner, axis * (size - corner)]);
+        let mut best = borders.min_by_key(|gap| gap.length_squared()).unwrap_or(IVec3::ZERO);
+
         // Bricks in growing cubes around the corner, until the cube is beyond the best.
         let home = (corner - 1) / EDGE as i32;
         for ring in 0.. {
-            let nearest = 2 * EDGE as i32 * (ring - 1).max(0);
-            if nearest * nearest > best.length_squared() {
+            let nearest = EDGE as i32 * (ring - 1).max(0);
+            if nearest * nearest >= best.length_squared() {
                 break;
             }
-            for offset in shell(ring) {
-                let at = home + offset;
+            for at in shell(ring).map(|offset| home + offset) {
                 let inside = at.min_element() >= 0 && (0..3).all(|axis| (at[axis] as usize) < bricks[axis]);
-                if !inside {
-                    continue;
-                }
-                let low = (at * EDGE as i32 - corner) * 2;
-                let apart = (low + 1).max(-(low + 7)).max(IVec3::ZERO);
-                if apart.length_squared() > best.length_squared() {
+                let low = at * EDGE as i32 - corner;
+                if !inside || gap_to(low, EDGE as i32).length_squared() >= best.length_squared() {
                     continue;
                 }
                 let number = at.x as usize + bricks[0] * (at.y as usize + bricks[1] * at.z as usize);
                 let matter = !self.void.words()[number] & self.void.inside(number);
-                for bit in brick::ones(matter) {
-                    let bit = bit as i32;
-                    let to = low + 1 + 2 * IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4);
-                    if to.length_squared() < best.length_squared() {
-                        best = to;
+                for bit in brick::ones(matter).map(|bit| bit as i32) {
+                    let gap = gap_to(low + IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4), 1);
+                    if gap.length_squared() < best.length_squared() {
+                        best = gap;
                     }
                 }
             }
         }
-        best.as_vec3() / 2.0
+        best.as_vec3()
     }
+}
+
+/// From the origin straight to the cube with that lowest corner and edge.
+fn gap_to(low: IVec3, edge: i32) -> IVec3 {
+    low.max(IVec3::ZERO) + (low + edge).min(IVec3::ZERO)
 }
 
 /// The voxel that a ray is in.
@@ -188,7 +182,9 @@ pub(crate) mod tests {
         let mut best = f32::INFINITY;
         for (x, y, z) in (-1..=nx).flat_map(|x| (-1..=ny).flat_map(move |y| (-1..=nz).map(move |z| (x, y, z)))) {
             if !void.get(VoxelIndex::new(x, y, z)) {
-                best = best.min((Vec3::new(x as f32, y as f32, z as f32) + 0.5 - corner.as_vec3()).length());
+                let low = (IVec3::new(x, y, z) - corner).as_vec3();
+                let apart = Vec3::ZERO.clamp(low, low + 1.0);
+                best = best.min(apart.length() + 0.5);
             }
         }
         best
@@ -217,10 +213,7 @@ pub(crate) mod tests {
 
     #[test]
     fn rays_leave_the_void_where_it_ends() {
-        let grid = boxes(
-            [20, 8, 8],
-            &[(IVec3::new(2, 2, 2), IVec3::new(9, 6, 6)), (IVec3::new(12, 2, 2), IVec3::new(19, 6, 6))],
-        );
+        let grid = boxes([20, 8, 8], &[(IVec3::new(2, 2, 2), IVec3::new(9, 6, 6)), (IVec3::new(12, 2, 2), IVec3::new(19, 6, 6))]);
         let matter = grid.matter();
         let from = Vec3::new(4.0, 4.0, 4.0);
         let leave = matter.leave_void(from, Vec3::X, 0.0);

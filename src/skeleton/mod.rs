@@ -1,92 +1,69 @@
 //! Where does the void run?
+//!
+//! The void is thinned to curves in the middle of its passages and rooms, with as many pieces and loops as it has. Steps,
+//! each in its file: the cubical complex of the void; ties for floating solids, which could only be surrounded by a
+//! surface; anchors in the middles of rooms; the collapse; branches that say nothing cut, dead ends grown to their walls. The
+//! curve becomes a graph with true radii and sections, is cut into cells (rooms) at necks (doorways), and each void voxel
+//! learns its nearest node.
+//! Passages under two voxels may be lost before this, when the scene is made into voxels, not here.
 
-mod links;
+pub mod anchors;
+pub mod cells;
+pub mod collapse;
+pub mod complex;
+pub mod curve;
+mod graph;
+pub mod links;
 mod matter;
 pub mod nearest;
-pub mod sections;
+mod necks;
+pub mod prune;
+mod sections;
+pub mod tie;
+pub mod topology;
+mod validate;
 
-use crate::space::{Lattice, VoxelIndex};
-use glam::Vec3;
-use petgraph::graph::{NodeIndex, UnGraph};
+pub use graph::{Cell, Edge, Neck, Node, Shape, Skeleton};
 
-/// The skeleton of a void: a graph of lattice points with the cells (rooms) and necks (doorways) it falls into.
-#[derive(Debug, Clone)]
-pub struct Skeleton {
-    /// Nodes and edges, numbered the same for any thread count.
-    pub graph: UnGraph<Node, Edge>,
-    /// Rooms: parts of the void between necks.
-    pub cells: Vec<Cell>,
-    /// Doorways and windows between cells.
-    pub necks: Vec<Neck>,
-    /// The lattice that [`Skeleton::nearest`] is laid on.
-    pub lattice: Lattice,
-    /// For each voxel (x fastest, then y, then z) the node nearest along the void, or [`NO_NODE`].
-    pub nearest: Vec<u32>,
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::voxel::bits::BitGrid;
+use crate::voxel::chessboard::Chessboard;
+use crate::voxel::opening;
+use complex::Complex;
+use curve::Curve;
+
+/// Thins a void (outside the grid all is matter) to its centre lines. They have as many components and loops as the void,
+/// no surface, and at least one vertex for each component; an empty void gives an empty curve. The same for any number of
+/// threads.
+///
+/// Stages reported: `distance`, `opening`, `complex`, `ties`, `anchors`, `collapse` (a unit a layer), `prune`.
+/// Memory: about 4 bytes a voxel. Time: about 10 ns a voxel on two threads.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn thin(void: &BitGrid, progress: &dyn Progress, cancel: &Cancel) -> Result<Curve, Cancelled> {
+    let board = staged(progress, "distance", || Chessboard::new(void, cancel))?;
+    let opening = staged(progress, "opening", || opening::opening(void, &board, cancel))?;
+    let mut complex = staged(progress, "complex", || Complex::closure(void));
+    staged(progress, "ties", || tie::tie(&mut complex, void, cancel))?;
+    let anchors = staged(progress, "anchors", || anchors::anchors(void, &board));
+    staged(progress, "collapse", || {
+        collapse::collapse(&mut complex, &board.distance, &opening, &anchors, progress, cancel)
+    })?;
+    Ok(staged(progress, "prune", || {
+        let mut curve = Curve::new(&complex, &anchors, board.distance, opening);
+        prune::prune(&mut curve);
+        prune::regrow(&mut curve);
+        curve
+    }))
 }
 
-/// What [`Skeleton::nearest`] holds for voxels that are not void, or whose void has no node.
-pub const NO_NODE: u32 = u32::MAX;
-
-/// A point of the skeleton.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
-    /// Where it is, metres.
-    pub position_m: Vec3,
-    /// Exact Euclidean distance to the nearest matter, metres.
-    pub radius_m: f32,
-    /// Chessboard distance to matter, voxels.
-    pub distance_voxels: u16,
-    /// Half-width of the largest chessboard ball that covers it, voxels. `distance_voxels / opening_voxels` is its saliency: 1 at the
-    /// centre of a maximal ball.
-    pub opening_voxels: u16,
-    /// The cell it belongs to.
-    pub cell: u32,
+fn staged<T>(progress: &dyn Progress, stage: &'static str, work: impl FnOnce() -> T) -> T {
+    progress.begin(stage, 0);
+    let done = work();
+    progress.end();
+    done
 }
 
-/// A step of the skeleton.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
-    /// Its length, metres.
-    pub length_m: f32,
-    /// True area of the void across its middle, m2.
-    pub section_m2: f32,
-    /// The neck it crosses.
-    pub neck: Option<u32>,
-}
-
-/// A room: a part of the void that necks bound.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cell {
-    /// Its volume, m3.
-    pub volume_m3: f32,
-    /// Its node with the greatest distance to matter.
-    pub centre: NodeIndex,
-}
-
-/// A doorway: the narrowest section between two cells.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Neck {
-    /// The two cells it joins, the lower number first.
-    pub cells: [u32; 2],
-    /// Where it is, metres.
-    pub position_m: Vec3,
-    /// Unit normal, from the first cell to the second.
-    pub normal: Vec3,
-    /// Its area, m2.
-    pub area_m2: f32,
-}
-
-impl Skeleton {
-    /// The node nearest to a void voxel along the void; `None` outside the void.
-    pub fn nearest_node(&self, voxel: VoxelIndex) -> Option<NodeIndex> {
-        let [nx, ny, _] = self.lattice.size;
-        self.lattice
-            .contains(voxel)
-            .then(|| {
-                let [x, y, z] = voxel.0.to_array().map(|at| at as usize);
-                self.nearest[x + nx * (y + ny * z)]
-            })
-            .filter(|&node| node != NO_NODE)
-            .map(|node| NodeIndex::new(node as usize))
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@
 //! the same one: a wide opening is crossed by several strands. A neck's plane is that of its narrowest section, turned
 //! until its area is least, because the curve seldom runs square through a door.
 
-use super::Neck;
+use super::graph::Neck;
 use super::cells::Widths;
 use super::matter::Matter;
 use super::sections::Section;

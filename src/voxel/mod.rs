@@ -12,6 +12,7 @@ pub mod closed;
 pub mod cut;
 pub mod euclid;
 pub mod flood;
+pub mod groups;
 pub mod levels;
 pub mod march;
 pub mod memory;
