@@ -13,7 +13,7 @@ use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
 use crate::space::VoxelIndex;
-use crate::voxel::seeds::{self, Lost, Place};
+use crate::voxel::seeds::{self, Ground, Lost, Place};
 use crate::voxel::{VoxelError, Voxels, voxelise};
 use glam::Vec3;
 use petgraph::graph::NodeIndex;
@@ -132,7 +132,8 @@ impl Model {
     pub fn place(&self, point_m: Vec3, facing: Option<Vec3>) -> Result<NodeIndex, Status> {
         let Voxels { lattice, solid, void, .. } = &self.voxels;
         let place = Place { point_m, normal: facing };
-        let voxel = seeds::resolved(&place, lattice, solid, void, &self.rays).map_err(status)?;
+        let ground = Ground { lattice, solid, rays: &self.rays };
+        let voxel = seeds::resolved_one(&place, &ground, void).map_err(status)?;
         self.node_of(voxel)
     }
 

@@ -105,13 +105,6 @@ const SMOOTH_STEPS: u16 = 6;
 /// The least, which takes the stairs out of a slanted curve.
 const LEAST_SMOOTH_STEPS: u16 = 2;
 
-impl Node {
-    /// Distance over opening: 1 at the centre of a maximal ball, less off it.
-    pub fn saliency(&self) -> f32 {
-        f32::from(self.distance_voxels) / f32::from(self.opening_voxels.max(1))
-    }
-}
-
 impl Skeleton {
     /// Thins the void of some voxels and cuts its skeleton into cells. `rays` are those of the scene.
     ///

@@ -116,7 +116,11 @@ pub fn resolved(
     voxels.collect()
 }
 
-fn resolved_one(place: &Place, ground: &Ground, preferred: &BitGrid) -> Result<VoxelIndex, Lost> {
+/// The voxel that stands for one place, as in [`resolved`].
+///
+/// # Errors
+/// [`Lost`] where the place lies outside the grid or faces no void.
+pub fn resolved_one(place: &Place, ground: &Ground, preferred: &BitGrid) -> Result<VoxelIndex, Lost> {
     let own = ground.lattice.voxel_at(place.point_m);
     if !ground.lattice.contains(own) {
         return Err(Lost::Outside);
