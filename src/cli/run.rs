@@ -4,7 +4,7 @@ use super::args::{Args, Command, Common};
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::stages::{Stages, available_bytes};
-use super::write::{self, Folder};
+use super::write::{self, Analysed, Folder};
 use crate::export;
 use crate::flow::estimator;
 use crate::job::{Cancel, Progress};
@@ -43,7 +43,14 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
     let name = plan.method.name();
     let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
     if let Some(folder) = &mut folder {
-        write::analysis(folder, &scene, &model, estimator(plan.method), &entry.field, &plan.settings, &stages, cancel)?;
+        let analysed = Analysed {
+            scene: &scene,
+            model: &model,
+            at_sensors: &entry.field,
+            estimate: estimator(plan.method),
+            settings: &plan.settings,
+        };
+        write::analysis(folder, &analysed, &stages, cancel)?;
     }
     let ended = stages.ended();
     let analysis = Analysis::new(&scene, &model, name, &entry.field, &ended, &warnings);

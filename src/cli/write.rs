@@ -5,7 +5,7 @@ use crate::export::{field, graphml, plan, ply, skeleton_json, swc, voxels, whole
 use crate::flow::Estimator;
 use crate::job::{Cancel, Progress};
 use crate::light::{Field, Settings};
-use crate::model::Model;
+use crate::model::{Model, Probe};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use std::io::{self, Write};
@@ -44,28 +44,32 @@ impl<'a> Folder<'a> {
     }
 }
 
+/// What was analysed, and how to ask for more of it.
+pub struct Analysed<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What was modelled of it.
+    pub model: &'a Model,
+    /// The field at its sensors.
+    pub at_sensors: &'a Field,
+    /// What gives the field elsewhere; `None` for the path tracer, which answers at sensors alone.
+    pub estimate: Option<&'a Estimator<'a>>,
+    /// The settings of the estimate.
+    pub settings: &'a Settings,
+}
+
 /// What `analyse -o` writes, besides its report: voxels, the skeleton with the irradiance at its nodes, and the field at the
 /// sensors and on the mesh.
 ///
 /// # Errors
 /// A file that cannot be written, or an interrupt.
-pub fn analysis(
-    folder: &mut Folder,
-    scene: &Scene,
-    model: &Model,
-    estimate: Option<&Estimator>,
-    at_sensors: &Field,
-    settings: &Settings,
-    stages: &Stages,
-    cancel: &Cancel,
-) -> Result<()> {
+pub fn analysis(folder: &mut Folder, analysed: &Analysed, stages: &Stages, cancel: &Cancel) -> Result<()> {
     stages.begin("files", 0);
-    let at_nodes =
-        estimate.map(|estimate| estimate(model, &model.probes_at_nodes(), settings, stages, cancel)).transpose()?;
+    let Analysed { scene, model, at_sensors, estimate, settings } = *analysed;
+    let ask = |probes: &[Probe]| estimate.map(|estimate| estimate(model, probes, settings, stages, cancel)).transpose();
+    let at_nodes = ask(&model.probes_at_nodes())?;
     let faces_m = model.faces_to_void(scene);
-    let at_faces = estimate
-        .map(|estimate| estimate(model, &model.probes_at_faces(&faces_m), settings, stages, cancel))
-        .transpose()?;
+    let at_faces = ask(&model.probes_at_faces(&faces_m))?;
 
     let skeleton = &model.skeleton;
     folder.file("voxels.npy", |out| voxels::write_npy(out, &model.voxels))?;
