@@ -26,8 +26,8 @@ struct Loader<'a> {
 impl Scene {
     /// Loads a scene file, or a mesh alone ([`Scene::bare`]: in metres, no lights, no sensors).
     ///
-    /// What can be mended is counted in [`Scene::warnings`]. Reports the stages "read" and "parse" of each file, in
-    /// bytes, and "merge". Memory: twice the largest file, and the mesh.
+    /// What can be mended is counted in [`Scene::warnings`]. Reports the stages "read" and "parse" of each file in
+    /// bytes, "nodes" of a glTF, and "merge". Memory: twice the largest file, and the mesh.
     ///
     /// # Errors
     /// [`SceneError`] with file, line, what and the bound for anything that cannot be used, see `docs/scene-file.md`;
