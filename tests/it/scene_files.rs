@@ -131,6 +131,18 @@ fn unit_and_axis_describe_the_mesh_alone() {
 }
 
 #[test]
+fn up_is_what_the_scene_file_says_and_else_what_the_format_says() {
+    let size = |line: &str| {
+        let toml = format!("[geometry]\nmeshes = [{:?}]\n{line}", sound("box.gltf"));
+        let (low, high) = loads(&[("a.toml", &toml)]).mesh.bounds_m().expect("a mesh");
+        high - low
+    };
+    assert_eq!(size(""), Vec3::new(4.0, 3.0, 2.0));
+    assert_eq!(size("up = \"y\""), Vec3::new(4.0, 3.0, 2.0));
+    assert_eq!(size("up = \"z\""), Vec3::new(4.0, 2.0, 3.0));
+}
+
+#[test]
 fn a_mesh_alone_is_a_scene() {
     let scene = loads(&[("t.OBJ", TETRAHEDRON)]);
     assert!(scene.bare && scene.lights.is_empty() && scene.sensors.is_empty());
