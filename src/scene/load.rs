@@ -88,6 +88,9 @@ impl Loader<'_> {
 
         // Sensors and references before the meshes: their mistakes show at once, and not after minutes.
         let sensors = self.sensors(&description)?;
+        if let (Some(file), true) = (&description.sensors, sensors.is_empty()) {
+            scene.warnings.push(format!("{}: no sensors in it", file.value));
+        }
         let rows = match &description.reference {
             None => None,
             Some(file) => {

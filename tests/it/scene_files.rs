@@ -150,6 +150,31 @@ fn a_mesh_alone_is_a_scene() {
     assert!(scene.materials.iter().all(|material| material.reflectance == 0.5));
 }
 
+#[test]
+fn what_is_left_out_is_said() {
+    let toml = "[geometry]\nmeshes = [\"t.obj\"]\n[[materials]]\nname = \"gras\"\nreflectance = 0.2\n[sensors]\nfile = \"s.csv\"\n";
+    let mesh = "mtllib models/t.mtl\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\n\
+        usemtl grass\nf 1 2 3\nusemtl none\nf 3 2 1\nf 1 2 4\nf 1 2\nhello\n";
+    let scene = loads(&[
+        ("a.toml", toml),
+        ("t.obj", mesh),
+        ("t.mtl", "newmtl grass\nKd 0.25\nmap_Kd grass.png\n"),
+        ("s.csv", "# none yet\nid,x,y,z\n"),
+    ]);
+    assert_eq!(scene.materials[0].reflectance, 0.25);
+    let want = [
+        "s.csv: no sensors in it",
+        "t.obj: 1 texture (map_Kd) not read, Kd stands for it",
+        "t.obj: material file \"gone.mtl\" is missing",
+        "t.obj: 1 material in no material file",
+        "t.obj: 1 unknown statement left out",
+        "materials \"gras\" (line 3) match no face",
+        "t.obj: 2 degenerate faces left out",
+        "t.obj: 1 duplicate face left out",
+    ];
+    assert_eq!(scene.warnings, want);
+}
+
 /// A file of the shared real data; `None`, said on stderr, where the data are not there.
 fn real(file: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(file);
