@@ -165,7 +165,7 @@ pub enum Kind {
         /// The most there may be.
         most: u64,
     },
-    /// Both of two keys of which one is needed, or none.
+    /// Things that do not go together, or stand in the wrong order.
     #[error("{0}")]
     Contradiction(String),
 }

@@ -47,17 +47,17 @@ impl<'a> Input<'a> {
         self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
-    /// The bytes of a file that this one names, relative to its own folder.
+    /// The bytes of a file that this one names, relative to its own folder; `progress` hears of the reading.
     ///
     /// # Errors
     /// [`Kind::Read`] of that file, with `NotFound` where this input may name none; [`Kind::Cancelled`].
-    pub fn neighbour(&self, name: &str) -> Result<(PathBuf, Vec<u8>), SceneError> {
+    pub fn neighbour(&self, name: &str, progress: &dyn Progress) -> Result<(PathBuf, Vec<u8>), SceneError> {
         let Some(folder) = &self.folder else {
             let error = std::io::Error::from(std::io::ErrorKind::NotFound);
             return Err(SceneError::new(Path::new(name), None, Kind::Read(error)));
         };
         let path = folder.join(name);
-        let bytes = read_file(&path, self.progress, self.cancel)?;
+        let bytes = read_file(&path, progress, self.cancel)?;
         Ok((path, bytes))
     }
 

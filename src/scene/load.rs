@@ -26,8 +26,8 @@ struct Loader<'a> {
 impl Scene {
     /// Loads a scene file, or a mesh alone ([`Scene::bare`]: in metres, no lights, no sensors).
     ///
-    /// What can be mended is counted in [`Scene::warnings`]. Reports the stages "read" and "parse" of each file, in
-    /// bytes, and "merge". Memory: twice the largest file, and the mesh.
+    /// What can be mended is counted in [`Scene::warnings`]. Reports the stages "read" and "parse" of each file in
+    /// bytes, "nodes" of a glTF, and "merge". Memory: twice the largest file, and the mesh.
     ///
     /// # Errors
     /// [`SceneError`] with file, line, what and the bound for anything that cannot be used, see `docs/scene-file.md`;
@@ -88,6 +88,9 @@ impl Loader<'_> {
 
         // Sensors and references before the meshes: their mistakes show at once, and not after minutes.
         let sensors = self.sensors(&description)?;
+        if let (Some(file), true) = (&description.sensors, sensors.is_empty()) {
+            scene.warnings.push(format!("{}: no sensors in it", file.value));
+        }
         let rows = match &description.reference {
             None => None,
             Some(file) => {

@@ -103,7 +103,8 @@ fn origin_of(parts: &[Part]) -> Result<Option<DVec3>, SceneError> {
         for &vertex in part.triangles.iter().flatten() {
             let Some(&p) = part.positions_m.get(vertex as usize) else { continue };
             if !p.is_finite() || p.abs().max_element() > FARTHEST_M {
-                let value = p.to_array().into_iter().find(|c| !(c.abs() <= FARTHEST_M)).unwrap_or(f64::NAN);
+                let value =
+                    p.to_array().into_iter().find(|c| !c.is_finite() || c.abs() > FARTHEST_M).unwrap_or(f64::NAN);
                 let what = format!("coordinate of vertex {}", vertex + 1);
                 return Err(SceneError::new(&part.path, None, Kind::Outside { what, value, bound: "-1e8 to 1e8 m" }));
             }

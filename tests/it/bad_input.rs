@@ -80,6 +80,36 @@ fn loading_can_be_cancelled() {
     assert!(error.is_cancelled());
 }
 
+/// Hears whether each stage ends before the next one begins.
+#[derive(Default)]
+struct Open(std::sync::atomic::AtomicI64);
+
+impl lightvein::job::Progress for Open {
+    fn begin(&self, stage: &'static str, _total: u64) {
+        let open = self.0.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+        assert_eq!(open, 0, "{stage} begins inside another stage");
+    }
+    fn advance(&self, _units: u64) {
+        assert_eq!(self.0.load(std::sync::atomic::Ordering::SeqCst), 1, "outside of any stage");
+    }
+    fn end(&self) {
+        self.0.fetch_sub(1, std::sync::atomic::Ordering::SeqCst);
+    }
+}
+
+#[test]
+fn stages_follow_each_other_and_end_also_in_failure() {
+    let expected = std::fs::read_to_string(folder().join("expected.tsv")).expect("the list of broken files");
+    let broken = expected.lines().filter_map(|line| line.split('\t').next());
+    for file in
+        broken.chain(["sound/box.toml", "sound/box.gltf", "sound/box.glb", "sound/box.stl", "sound/box_big.ply"])
+    {
+        let open = Open::default();
+        let _ = Scene::load(&folder().join(file), &open, &Cancel::new());
+        assert_eq!(open.0.into_inner(), 0, "{file} leaves a stage open");
+    }
+}
+
 /// A change to a file: where, as a share of its length, and what.
 #[derive(Debug, Clone)]
 enum Edit {

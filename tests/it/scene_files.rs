@@ -131,11 +131,48 @@ fn unit_and_axis_describe_the_mesh_alone() {
 }
 
 #[test]
+fn up_is_what_the_scene_file_says_and_else_what_the_format_says() {
+    let size = |line: &str| {
+        let toml = format!("[geometry]\nmeshes = [{:?}]\n{line}", sound("box.gltf"));
+        let (low, high) = loads(&[("a.toml", &toml)]).mesh.bounds_m().expect("a mesh");
+        high - low
+    };
+    assert_eq!(size(""), Vec3::new(4.0, 3.0, 2.0));
+    assert_eq!(size("up = \"y\""), Vec3::new(4.0, 3.0, 2.0));
+    assert_eq!(size("up = \"z\""), Vec3::new(4.0, 2.0, 3.0));
+}
+
+#[test]
 fn a_mesh_alone_is_a_scene() {
     let scene = loads(&[("t.OBJ", TETRAHEDRON)]);
     assert!(scene.bare && scene.lights.is_empty() && scene.sensors.is_empty());
     assert_eq!((scene.name.as_str(), scene.mesh.triangles.len()), ("t", 4));
     assert!(scene.materials.iter().all(|material| material.reflectance == 0.5));
+}
+
+#[test]
+fn what_is_left_out_is_said() {
+    let toml = "[geometry]\nmeshes = [\"t.obj\"]\n[[materials]]\nname = \"gras\"\nreflectance = 0.2\n[sensors]\nfile = \"s.csv\"\n";
+    let mesh = "mtllib models/t.mtl\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\n\
+        usemtl grass\nf 1 2 3\nusemtl none\nf 3 2 1\nf 1 2 4\nf 1 2\nhello\n";
+    let scene = loads(&[
+        ("a.toml", toml),
+        ("t.obj", mesh),
+        ("t.mtl", "newmtl grass\nKd 0.25\nmap_Kd grass.png\n"),
+        ("s.csv", "# none yet\nid,x,y,z\n"),
+    ]);
+    assert_eq!(scene.materials[0].reflectance, 0.25);
+    let want = [
+        "s.csv: no sensors in it",
+        "t.obj: 1 texture (map_Kd) not read, Kd stands for it",
+        "t.obj: material file \"gone.mtl\" is missing",
+        "t.obj: 1 material in no material file",
+        "t.obj: 1 unknown statement left out",
+        "materials \"gras\" (line 3) match no face",
+        "t.obj: 2 degenerate faces left out",
+        "t.obj: 1 duplicate face left out",
+    ];
+    assert_eq!(scene.warnings, want);
 }
 
 /// A file of the shared real data; `None`, said on stderr, where the data are not there.

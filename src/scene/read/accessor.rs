@@ -1,6 +1,6 @@
 //! Which numbers does a glTF accessor name?
 //!
-//! Buffers are loaded once, on first use: the binary chunk, base64 in the document, or a file beside it. Every view and
+//! All buffers are loaded first: the binary chunk, base64 in the document, or a file beside it. Every view and
 //! accessor is checked against its buffer before a byte is read, so that counts and offsets may be anything.
 
 use crate::scene::error::{Kind, SceneError};
@@ -8,7 +8,7 @@ use crate::scene::input::Input;
 use ::gltf::accessor::{DataType, Dimensions, sparse::IndexType};
 use ::gltf::buffer::{Source, View};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::borrow::Cow;
 
 /// Most elements of an accessor that has no data but a few exceptions: they take memory that the file does not back.
 const MOST_WITHOUT_DATA: usize = 1 << 24;
@@ -16,56 +16,46 @@ const MOST_WITHOUT_DATA: usize = 1 << 24;
 /// The buffers of a document.
 pub struct Buffers<'a> {
     input: &'a Input<'a>,
-    blob: Option<&'a [u8]>,
-    loaded: HashMap<usize, Vec<u8>>,
+    /// In the document's order.
+    bytes: Vec<Cow<'a, [u8]>>,
 }
 
 impl<'a> Buffers<'a> {
-    /// The buffers that `input` names; `blob` is its binary chunk.
-    pub fn new(input: &'a Input<'a>, blob: Option<&'a [u8]>) -> Self {
-        Self { input, blob, loaded: HashMap::new() }
-    }
-
-    /// All bytes of a buffer.
-    fn bytes(&mut self, buffer: &::gltf::Buffer) -> Result<&[u8], SceneError> {
-        let failed = |words: String| self.input.error(None, Kind::Gltf(words));
-        let uri = match buffer.source() {
-            Source::Bin => return self.blob.ok_or_else(|| failed("the binary chunk is missing".into())),
-            Source::Uri(uri) => uri,
-        };
-        if !self.loaded.contains_key(&buffer.index()) {
-            let bytes = match uri.strip_prefix("data:") {
-                Some(data) => {
-                    let base64 = data.split_once(";base64,").map(|(_, base64)| base64);
-                    let bytes = base64.and_then(decode_base64);
-                    bytes.ok_or_else(|| failed(format!("buffer {} is not base64", buffer.index())))?
-                }
-                None => {
-                    let file = decode_percent(uri);
-                    self.input.neighbour(&file).map_err(|error| self.input.named("buffer", &file, error))?.1
-                }
-            };
-            self.loaded.insert(buffer.index(), bytes);
+    /// Loads the buffers of `document`; `blob` is its binary chunk.
+    ///
+    /// # Errors
+    /// [`SceneError`] for buffers that are missing or no base64; [`Kind::Cancelled`].
+    pub fn load(input: &'a Input<'a>, document: &::gltf::Document, blob: Option<&'a [u8]>) -> Result<Self, SceneError> {
+        let failed = |words: String| input.error(None, Kind::Gltf(words));
+        let mut bytes = Vec::new();
+        for buffer in document.buffers() {
+            bytes.push(match buffer.source() {
+                Source::Bin => Cow::Borrowed(blob.ok_or_else(|| failed("the binary chunk is missing".into()))?),
+                Source::Uri(uri) => match uri.strip_prefix("data:") {
+                    Some(data) => {
+                        let base64 = data.split_once(";base64,").and_then(|(_, base64)| decode_base64(base64));
+                        Cow::Owned(base64.ok_or_else(|| failed(format!("buffer {} is not base64", buffer.index())))?)
+                    }
+                    None => {
+                        let file = decode_percent(uri);
+                        let read = input.neighbour(&file, input.progress);
+                        Cow::Owned(read.map_err(|error| input.named("buffer", &file, error))?.1)
+                    }
+                },
+            });
         }
-        Ok(self.loaded.get(&buffer.index()).map_or(&[], Vec::as_slice))
+        Ok(Self { input, bytes })
     }
 
     /// `count` elements of `size` bytes from `offset` of a view on.
-    fn rows(
-        &mut self,
-        view: &View,
-        offset: usize,
-        size: usize,
-        count: usize,
-        what: &str,
-    ) -> Result<Rows<'_>, SceneError> {
+    fn rows(&self, view: &View, offset: usize, size: usize, count: usize, what: &str) -> Result<Rows<'_>, SceneError> {
         let input = self.input;
         let ends_early = |what: String, needed: u128, left: usize| {
             let needed = u64::try_from(needed).unwrap_or(u64::MAX);
             input.error(None, Kind::EndsEarly { what, needed, left: left as u64 })
         };
         let stride = view.stride().unwrap_or(size);
-        let bytes = self.bytes(&view.buffer())?;
+        let bytes: &[u8] = self.bytes.get(view.buffer().index()).map_or(&[], |bytes| bytes);
         let end = view.offset() as u128 + view.length() as u128;
         let Some(bytes) = usize::try_from(end).ok().and_then(|end| bytes.get(view.offset()..end)) else {
             return Err(ends_early(format!("buffer view {}", view.index()), end, bytes.len()));
@@ -97,11 +87,7 @@ impl Rows<'_> {
 ///
 /// # Errors
 /// [`SceneError`] if it is not a VEC3, its data are missing or too short, or a sparse index is out of range.
-pub fn read_positions(
-    input: &Input,
-    buffers: &mut Buffers,
-    accessor: &::gltf::Accessor,
-) -> Result<Vec<DVec3>, SceneError> {
+pub fn read_positions(input: &Input, buffers: &Buffers, accessor: &::gltf::Accessor) -> Result<Vec<DVec3>, SceneError> {
     let what = format!("accessor {}", accessor.index());
     let failed = |words: &str| input.error(None, Kind::Gltf(format!("{what} {words}")));
     if accessor.dimensions() != Dimensions::Vec3 {
@@ -147,7 +133,7 @@ pub fn read_positions(
 /// [`SceneError`] if it is not a scalar of whole numbers, its data are missing or too short, or a number has no vertex.
 pub fn read_indices(
     input: &Input,
-    buffers: &mut Buffers,
+    buffers: &Buffers,
     accessor: &::gltf::Accessor,
     count: usize,
 ) -> Result<Vec<u32>, SceneError> {

@@ -8,7 +8,7 @@
 //! metres with Y up.
 
 use super::accessor::{Buffers, read_indices, read_positions};
-use super::{RawMaterial, RawMesh, check_vertices, luminance};
+use super::{MOST_EMISSION, RawMaterial, RawMesh, check_vertices, luminance};
 use crate::scene::error::{Kind, SceneError};
 use crate::scene::input::{Input, counted, without_mark};
 use ::gltf::json::validation::Checked;
@@ -23,25 +23,57 @@ use std::collections::HashMap;
 /// missing or too short, nodes used twice, indices without a vertex, coordinates that are not finite or too large,
 /// reflectances above 1.
 pub fn read_gltf(input: &Input) -> Result<RawMesh, SceneError> {
-    let _stage = input.parse();
+    let stage = input.parse();
     let gltf = parse(input)?;
-    let mut buffers = Buffers::new(input, gltf.blob.as_deref());
+    drop(stage);
+    let buffers = Buffers::load(input, &gltf.document, gltf.blob.as_deref())?;
     let mut mesh = RawMesh::default();
-    let mut textures = 0_usize;
+    let mut textures = 0;
     for material in gltf.document.materials() {
         textures += usize::from(material.pbr_metallic_roughness().base_color_texture().is_some());
         textures += usize::from(material.emissive_texture().is_some());
         let number = material.index().unwrap_or_default();
         mesh.materials.push(read_material(&material).map_err(|kind| in_material(input, number, kind))?);
     }
+
+    input.progress.begin("nodes", gltf.document.nodes().len() as u64);
+    let walked = read_nodes(input, &gltf.document, &buffers, &mut mesh);
+    input.progress.end();
+    let passed_over = walked?;
+    let warnings = [
+        (passed_over.primitives, "primitive", "of points or lines left out"),
+        (passed_over.deformations, "mesh node", "with skin or morph targets taken at rest"),
+        (textures, "texture", "not read"),
+    ];
+    for (count, thing, fate) in warnings.into_iter().filter(|&(count, ..)| count > 0) {
+        mesh.warnings.push(format!("{} {fate}", counted(count, thing)));
+    }
+    Ok(mesh)
+}
+
+/// What is in a document and not read.
+#[derive(Default)]
+struct PassedOver {
+    primitives: usize,
+    deformations: usize,
+}
+
+/// Adds the meshes of all nodes to `mesh`.
+fn read_nodes(
+    input: &Input,
+    document: &::gltf::Document,
+    buffers: &Buffers,
+    mesh: &mut RawMesh,
+) -> Result<PassedOver, SceneError> {
+    let mut passed_over = PassedOver::default();
     let mut names = HashMap::new();
-    let (mut other_modes, mut deformed) = (0_usize, 0_usize);
 
     // The tree of nodes is walked with a stack of our own: a deep one would overflow that of the program.
-    let mut visited = vec![false; gltf.document.nodes().count()];
-    let mut open: Vec<(::gltf::Node, DMat4)> = roots(&gltf.document);
+    let mut visited = vec![false; document.nodes().len()];
+    let mut open = roots(document);
     open.reverse();
     while let Some((node, above)) = open.pop() {
+        input.progress.advance(1);
         input.cancel.check().map_err(|_| input.error(None, Kind::Cancelled))?;
         let twice = visited.get_mut(node.index()).is_none_or(|visited| std::mem::replace(visited, true));
         if twice {
@@ -53,30 +85,20 @@ pub fn read_gltf(input: &Input) -> Result<RawMesh, SceneError> {
         open.extend(children.into_iter().rev());
 
         let Some(instance) = node.mesh() else { continue };
-        deformed += usize::from(node.skin().is_some() || instance.weights().is_some());
+        passed_over.deformations += usize::from(node.skin().is_some() || instance.weights().is_some());
         for primitive in instance.primitives() {
             if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-                other_modes += 1;
+                passed_over.primitives += 1;
                 continue;
             }
             let material = primitive.material().index().map(|number| number as u32).unwrap_or_else(|| {
                 let name = instance.name().or(node.name()).map_or_else(|| input.stem(), str::to_owned);
                 mesh.material(&mut names, &name)
             });
-            read_primitive(input, &mut buffers, &primitive, to_world, material, &mut mesh)?;
+            read_primitive(input, buffers, &primitive, to_world, material, mesh)?;
         }
     }
-
-    if other_modes > 0 {
-        mesh.warnings.push(format!("{} of points or lines left out", counted(other_modes, "primitive")));
-    }
-    if deformed > 0 {
-        mesh.warnings.push(format!("{} with skin or morph targets taken at rest", counted(deformed, "mesh node")));
-    }
-    if textures > 0 {
-        mesh.warnings.push(format!("{} not read", counted(textures, "texture")));
-    }
-    Ok(mesh)
+    Ok(passed_over)
 }
 
 /// The validated document.
@@ -154,9 +176,8 @@ fn in_material(input: &Input, number: usize, kind: Kind) -> SceneError {
 fn read_material(material: &::gltf::Material) -> Result<RawMaterial, Kind> {
     let pbr = material.pbr_metallic_roughness();
     let [red, green, blue, _] = pbr.base_color_factor().map(f64::from);
-    let base = luminance([red, green, blue]);
-    if !(0.0..=1.0 + 1e-6).contains(&base) {
-        return Err(Kind::Outside { what: "luminance of baseColorFactor".into(), value: base, bound: "0 to 1" });
+    if let Some(value) = [red, green, blue].into_iter().find(|share| !(0.0..=1.0).contains(share)) {
+        return Err(Kind::Outside { what: "baseColorFactor".into(), value, bound: "0 to 1" });
     }
     let says_nothing = pbr.base_color_texture().is_some() || [red, green, blue] == [1.0; 3];
     let strength = f64::from(material.emissive_strength().unwrap_or(1.0));
@@ -164,12 +185,12 @@ fn read_material(material: &::gltf::Material) -> Result<RawMaterial, Kind> {
     if !emission.is_finite() {
         return Err(Kind::NotFinite { what: "emission".into(), value: emission });
     }
-    if !(0.0..=1e9).contains(&emission) {
+    if !(0.0..=MOST_EMISSION).contains(&emission) {
         return Err(Kind::Outside { what: "emission".into(), value: emission, bound: "0 to 1e9 W/m2/sr" });
     }
     Ok(RawMaterial {
         name: material.name().unwrap_or_default().to_owned(),
-        reflectance: if says_nothing { None } else { Some(base.min(1.0)) },
+        reflectance: if says_nothing { None } else { Some(luminance([red, green, blue]).min(1.0)) },
         emission_w_m2_sr: emission,
     })
 }
@@ -177,7 +198,7 @@ fn read_material(material: &::gltf::Material) -> Result<RawMaterial, Kind> {
 /// Adds the triangles of one primitive, placed by `to_world`.
 fn read_primitive(
     input: &Input,
-    buffers: &mut Buffers,
+    buffers: &Buffers,
     primitive: &::gltf::Primitive,
     to_world: DMat4,
     material: u32,
@@ -287,7 +308,7 @@ mod tests {
         fails(&good.replace("\"byteLength\":6", "\"byteLength\":600"), "buffer view 1 needs 636 bytes, 42 are left");
         fails(&good.replace("AAABAAIA", "AAABAAkA"), "accessor 1 uses vertex 9, but there are 3");
         fails(&good.replace("AACAPw", "AADAfw"), "vertex 1 of accessor 0 NaN is not a finite number");
-        fails(&good.replace("0.5,0.5,0.5", "2,2,2"), "material 0: luminance of baseColorFactor 2.0 is outside 0 to 1");
+        fails(&good.replace("0.5,0.5,0.5", "2,2,2"), "material 0: baseColorFactor 2.0 is outside 0 to 1");
         fails(&good.replace("\"mesh\":0", "\"mesh\":5"), "glTF: nodes[0].mesh");
         fails(&good.replace(BUFFER, "gone.bin"), "gone.bin");
         fails(&good.replace("base64,", "base64,!"), "base64");

@@ -22,6 +22,9 @@ pub mod stl;
 /// Most vertices of one mesh file, instances counted; 1.5 GB of positions. More would come from a damaged count.
 pub const MOST_VERTICES: usize = 64 << 20;
 
+/// Largest radiance that is accepted, W/m2/sr; the disc of the sun has 2e7.
+pub const MOST_EMISSION: f64 = 1e9;
+
 /// Endings of the mesh formats that can be read.
 pub const FORMATS: &str = "obj, gltf, glb, ply, stl";
 

@@ -4,7 +4,7 @@
 //! passed over: exporters disagree on its sense, and glazing is named in the scene file. Textures are not read; a
 //! material keeps its `Kd`, and a warning counts them.
 
-use super::luminance;
+use super::{MOST_EMISSION, luminance};
 use crate::scene::error::{Kind, SceneError};
 use crate::scene::input::{Input, Lines, counted, number, shown, text, without_mark, words};
 
@@ -50,18 +50,15 @@ pub fn read_mtl(input: &Input) -> Result<Materials, SceneError> {
             b"Kd" | b"Ke" if matches!(rest.clone().next(), Some(b"spectral" | b"xyz")) => spectra += 1,
             b"Kd" | b"Ke" => {
                 let what = if keyword == b"Kd" { "Kd" } else { "Ke" };
-                let value = luminance(colour(rest, what).map_err(failed)?);
+                let (most, bound) = if what == "Kd" { (1.0, "0 to 1") } else { (MOST_EMISSION, "0 to 1e9") };
+                let value = luminance(colour(rest, what, most, bound).map_err(failed)?);
                 let Some((_, properties)) = read.materials.last_mut() else {
                     return Err(failed(Kind::Missing(format!("newmtl before {what}"))));
                 };
                 if what == "Ke" {
                     properties.emission_w_m2_sr = value;
-                } else if value <= 1.0 {
-                    properties.reflectance = Some(value);
-                } else if value <= 1.0 + 1e-6 {
-                    properties.reflectance = Some(1.0);
                 } else {
-                    return Err(failed(Kind::Outside { what: "luminance of Kd".into(), value, bound: "0 to 1" }));
+                    properties.reflectance = Some(value.min(1.0));
                 }
             }
             _ => {}
@@ -76,8 +73,13 @@ pub fn read_mtl(input: &Input) -> Result<Materials, SceneError> {
     Ok(read)
 }
 
-/// Three components, or one for all three; a comment may follow.
-fn colour<'a>(words: impl Iterator<Item = &'a [u8]>, what: &str) -> Result<[f64; 3], Kind> {
+/// Three components from 0 to `most`, or one for all three; a comment may follow.
+fn colour<'a>(
+    words: impl Iterator<Item = &'a [u8]>,
+    what: &str,
+    most: f64,
+    bound: &'static str,
+) -> Result<[f64; 3], Kind> {
     let mut components = Vec::with_capacity(3);
     for word in words.take_while(|word| !word.starts_with(b"#")).take(3) {
         let value = number(word)
@@ -85,8 +87,8 @@ fn colour<'a>(words: impl Iterator<Item = &'a [u8]>, what: &str) -> Result<[f64;
         if !value.is_finite() {
             return Err(Kind::NotFinite { what: what.to_owned(), value });
         }
-        if value < 0.0 {
-            return Err(Kind::Outside { what: what.to_owned(), value, bound: "0 and above" });
+        if !(0.0..=most).contains(&value) {
+            return Err(Kind::Outside { what: what.to_owned(), value, bound });
         }
         components.push(value);
     }
@@ -122,8 +124,8 @@ mod tests {
     fn errors_name_the_line() {
         let fails = |text: &str, want: &str| assert_eq!(read(text).unwrap_err().to_string(), want);
         fails("Kd 1 1 1", "a.mtl:1: newmtl before Kd is missing");
-        fails("newmtl a\nKd 2 2 2", "a.mtl:2: luminance of Kd 2.0 is outside 0 to 1");
-        fails("newmtl a\nKe -1", "a.mtl:2: Ke -1.0 is outside 0 and above");
+        fails("newmtl a\nKd 2 2 2", "a.mtl:2: Kd 2.0 is outside 0 to 1");
+        fails("newmtl a\nKe -1", "a.mtl:2: Ke -1.0 is outside 0 to 1e9");
         fails("newmtl a\nKd 1 1", "a.mtl:2: 2 fields, expected 1 or 3 for Kd");
     }
 }

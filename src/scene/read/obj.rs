@@ -7,6 +7,7 @@
 
 use super::polygon::{Cut, tangled, triangulate};
 use super::{RawMesh, check_vertices, mtl};
+use crate::job::Quiet;
 use crate::scene::error::{Kind, SceneError};
 use crate::scene::input::{Input, Lines, counted, next_triple, shown, text, without_mark, words};
 use std::borrow::Cow;
@@ -143,12 +144,12 @@ fn read_library(
     let written = name.replace('\\', "/");
     let beside = written.rsplit('/').next().unwrap_or_default();
     for candidate in [written.as_str(), beside] {
-        let (path, bytes) = match input.neighbour(candidate) {
+        let (path, bytes) = match input.neighbour(candidate, &Quiet) {
             Ok(found) => found,
             Err(error) if error.is_cancelled() => return Err(error),
             Err(_) => continue,
         };
-        let input = Input { path: &path, bytes: &bytes, folder: None, ..*input };
+        let input = Input { path: &path, bytes: &bytes, folder: None, progress: &Quiet, ..*input };
         let read = mtl::read_mtl(&input)?;
         warnings.extend(read.warnings);
         for (name, properties) in read.materials {

@@ -163,7 +163,7 @@ pub fn read_ply(input: &Input) -> Result<RawMesh, SceneError> {
 fn read_property(body: &mut Body, property: &Property, corners: &mut Vec<u32>, count: usize) -> Result<f64, Kind> {
     let Some(length) = property.length else { return body.value(property.item) };
     let length = body.value(length)?;
-    if !(length >= 0.0) || length.fract() != 0.0 {
+    if !is_whole(length) {
         return Err(Kind::Outside { what: "length of a list".into(), value: length, bound: "whole numbers from 0" });
     }
     let length = length as u64;
@@ -171,13 +171,18 @@ fn read_property(body: &mut Body, property: &Property, corners: &mut Vec<u32>, c
     for _ in 0..length {
         let value = body.value(property.item)?;
         if property.role == Role::Corners {
-            if !(value >= 0.0) || value >= count as f64 || value.fract() != 0.0 {
+            if !is_whole(value) || value >= count as f64 {
                 return Err(Kind::NoSuchVertex { face: "a face".into(), index: value as i64, count });
             }
             corners.push(value as u32);
         }
     }
     Ok(length as f64)
+}
+
+/// Whether a number counts something.
+fn is_whole(value: f64) -> bool {
+    value >= 0.0 && value.fract() == 0.0
 }
 
 /// The body of the file from where reading has got to.

@@ -6,8 +6,9 @@
 use crate::scene::input::counted;
 use glam::DVec3;
 
-/// Most tests of a corner against an ear for one polygon; some tenths of a second. Beyond, the rest becomes a fan.
-const MOST_TESTS: usize = 20_000_000;
+/// Most tests of a corner against an ear for one polygon; about a second. Beyond, the rest becomes a fan. A
+/// spiral of 1,000 corners needs a hundredth of it.
+const MOST_TESTS: usize = 200_000_000;
 
 /// How cutting up a polygon went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +116,7 @@ mod tests {
             let [a, b, c] = t.map(|corner| positions[corner as usize]);
             0.5 * (b - a).cross(c - a).z
         };
-        assert!(triangles.iter().all(|t| area(t) >= -1e-12), "{triangles:?}");
+        assert!(triangles.iter().all(|t| area(t) >= -1e-12), "a triangle is turned over");
         (outcome, triangles.iter().map(area).sum(), triangles.len())
     }
 
@@ -142,6 +143,27 @@ mod tests {
         let (outcome, area, _) = cut(&bridged);
         assert_eq!(outcome, Cut::Whole);
         assert!((area - 12.0).abs() < 1e-12, "{area}");
+    }
+
+    #[test]
+    fn a_long_spiral_is_cut_whole() {
+        let turns = |count: usize, gap: f64| {
+            (0..count).map(move |step| {
+                let angle = step as f64 * 0.05;
+                let radius = 1.0 + gap + 0.1 * angle;
+                [radius * angle.cos(), radius * angle.sin()]
+            })
+        };
+        let inner: Vec<_> = turns(500, 0.0).collect();
+        let spiral: Vec<_> = turns(500, 0.3).chain(inner.into_iter().rev()).collect();
+        let doubled: f64 = (0..spiral.len())
+            .map(|at| (spiral[at], spiral[(at + 1) % spiral.len()]))
+            .map(|([ax, ay], [bx, by])| ax * by - bx * ay)
+            .sum();
+        let spiral: Vec<_> = if doubled < 0.0 { spiral.into_iter().rev().collect() } else { spiral };
+        let (outcome, area, count) = cut(&spiral);
+        assert_eq!((outcome, count), (Cut::Whole, spiral.len() - 2));
+        assert!((area / (0.5 * doubled.abs()) - 1.0).abs() < 1e-9);
     }
 
     #[test]
