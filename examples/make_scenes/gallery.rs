@@ -38,10 +38,10 @@ fn plan() -> Plan {
         .void([1.31, 5.31, 0.0], [2.44, 5.56, door])
         .void([8.31, 5.31, 0.0], [9.43, 5.56, door])
         .void([17.09, 5.31, 0.0], [18.07, 5.56, door])
-        // Corridor to the rooms above, between the first two of these, and the last one's wide opening to its alcove.
+        // Corridor to the rooms above, the last by a wide opening; between the first two; the last to its alcove.
         .void([4.23, 7.13, 0.0], [5.31, 7.37, door])
-        .void([10.87, 7.13, 0.0], [11.91, 7.37, door])
-        .void([14.57, 7.13, 0.0], [15.69, 7.37, door])
+        .void([8.67, 7.13, 0.0], [9.73, 7.37, door])
+        .void([15.61, 7.13, 0.0], [18.83, 7.37, 2.61])
         .void([7.18, 12.61, 0.0], [7.41, 13.57, door])
         .void([15.23, 11.02, 0.0], [18.41, 11.27, 2.61])
         // A pillar in the first room.
