@@ -44,7 +44,7 @@ def main():
     parser.add_argument("oracle")
     options = parser.parse_args()
     samples = 65536
-    print(subprocess.run(["cargo", "bench", "--bench", "trace"], cwd=ROOT, check=True, capture_output=True, text=True).stdout)
+    print(subprocess.run(["cargo", "bench", "--no-default-features", "--bench", "trace"], cwd=ROOT, check=True, capture_output=True, text=True).stdout)
     for rr_depth in (8, 24):
         seconds, shares = mitsuba(options.oracle, rr_depth, samples)
         print(f"Mitsuba, roulette from depth {rr_depth}: {seconds:.2f} s, {len(shares) * samples / seconds:.3e} sensor-samples/s")
