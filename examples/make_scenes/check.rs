@@ -1,0 +1,76 @@
+//! Is a scene fit to be written: mesh closed, every light and sensor in the void, every name once?
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use crate::scene::{Mesh, Scene};
+
+/// How far a planar sensor is moved off its wall before it is asked for: more than the 1 mm at which some stand off.
+const OFF_WALL_M: f64 = 0.003;
+
+/// The first thing found wrong with a scene.
+pub fn check(scene: &Scene) -> Result<(), String> {
+    let name = scene.name;
+    check_closed(&scene.mesh).map_err(|e| format!("{name}: {e}"))?;
+    for light in &scene.lights {
+        let p = light.place();
+        if !is_inside(&scene.mesh, p) {
+            return Err(format!("{name}: a light at {p} lies outside the void"));
+        }
+    }
+    for table in &scene.tables {
+        let mut seen = BTreeSet::new();
+        for sensor in &table.sensors {
+            let p = sensor.position + sensor.normal.unwrap_or_default() * OFF_WALL_M;
+            if !is_inside(&scene.mesh, p) {
+                return Err(format!(
+                    "{name}: sensor {} at {p} lies outside the void",
+                    sensor.id
+                ));
+            }
+            if !seen.insert(&sensor.id) {
+                return Err(format!("{name}: sensor {} occurs twice", sensor.id));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every edge must be walked once in each direction.
+fn check_closed(mesh: &Mesh) -> Result<(), String> {
+    let mut walks = BTreeMap::new();
+    for polygon in mesh.polygons() {
+        for (i, &a) in polygon.iter().enumerate() {
+            let b = polygon[(i + 1) % polygon.len()];
+            *walks.entry((a, b)).or_insert(0) += 1;
+        }
+    }
+    for (&(a, b), &count) in &walks {
+        if count != 1 || walks.get(&(b, a)) != Some(&1) {
+            let (p, q) = (mesh.vertices[a], mesh.vertices[b]);
+            return Err(format!(
+                "the mesh is not a closed surface at the edge {p} to {q}"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Whether the mesh winds about a point: its solid angles sum to 4 pi inside and to 0 outside (van Oosterom and
+/// Strackee 1983). Normals that point the wrong way fail here too.
+fn is_inside(mesh: &Mesh, p: DVec3) -> bool {
+    let mut half_angle = 0.0;
+    for polygon in mesh.polygons() {
+        for i in 1..polygon.len() - 1 {
+            let [a, b, c] = [polygon[0], polygon[i], polygon[i + 1]].map(|v| mesh.vertices[v] - p);
+            let (la, lb, lc) = (a.length(), b.length(), c.length());
+            let volume = a.dot(b.cross(c));
+            half_angle +=
+                volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+        }
+    }
+    // Normals into the void make the winding negative.
+    let winding = half_angle / (2.0 * std::f64::consts::PI);
+    (winding + 1.0).abs() < 0.5
+}
