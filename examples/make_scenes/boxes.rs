@@ -41,31 +41,20 @@ impl Plan {
     /// Whether a cube of half-side `margin_m` about a point is void at its corners and faces.
     pub fn is_clear(&self, p: DVec3, margin_m: f64) -> bool {
         let steps = [-margin_m, 0.0, margin_m];
-        steps.iter().all(|x| {
-            steps.iter().all(|y| {
-                steps
-                    .iter()
-                    .all(|z| self.is_void(p + DVec3::new(*x, *y, *z)))
-            })
-        })
+        steps.iter().all(|x| steps.iter().all(|y| steps.iter().all(|z| self.is_void(p + DVec3::new(*x, *y, *z)))))
     }
 
     /// The corners of the box that holds all parts.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        self.parts.iter().fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), (min, max, _)| (low.min(*min), high.max(*max)),
-        )
+        self.parts
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (min, max, _)| (low.min(*min), high.max(*max)))
     }
 
     /// The void's boundary. `material` names each quad's material by its normal.
     pub fn mesh(&self, material: impl Fn(DVec3) -> &'static str) -> Mesh {
         let planes: [Vec<f64>; 3] = std::array::from_fn(|axis| {
-            let mut planes: Vec<f64> = self
-                .parts
-                .iter()
-                .flat_map(|(min, max, _)| [min[axis], max[axis]])
-                .collect();
+            let mut planes: Vec<f64> = self.parts.iter().flat_map(|(min, max, _)| [min[axis], max[axis]]).collect();
             planes.sort_by(f64::total_cmp);
             planes.dedup();
             planes
@@ -90,11 +79,7 @@ impl Plan {
                         for upper in [false, true] {
                             // The cell on the other side; below the lowest plane there is only matter.
                             let mut other = cell;
-                            other[axis] = if upper {
-                                cell[axis] + 1
-                            } else {
-                                cell[axis].wrapping_sub(1)
-                            };
+                            other[axis] = if upper { cell[axis] + 1 } else { cell[axis].wrapping_sub(1) };
                             if other[axis] != usize::MAX && is_void(other) {
                                 continue;
                             }
@@ -108,9 +93,7 @@ impl Plan {
                                     corner[u] += i;
                                     corner[v] += j;
                                     *index_of.entry(corner).or_insert_with(|| {
-                                        mesh.vertices.push(DVec3::from(std::array::from_fn(|a| {
-                                            planes[a][corner[a]]
-                                        })));
+                                        mesh.vertices.push(DVec3::from(std::array::from_fn(|a| planes[a][corner[a]])));
                                         mesh.vertices.len() - 1
                                     })
                                 })

@@ -56,15 +56,7 @@ fn noise(p: DVec3) -> f64 {
     let mut sum = 0.0;
     for bits in 0..8 {
         let corner = IVec3::new(bits & 1, bits >> 1 & 1, bits >> 2);
-        let weight: f64 = (0..3)
-            .map(|a| {
-                if corner[a] == 1 {
-                    blend[a]
-                } else {
-                    1.0 - blend[a]
-                }
-            })
-            .product();
+        let weight: f64 = (0..3).map(|a| if corner[a] == 1 { blend[a] } else { 1.0 - blend[a] }).product();
         sum += weight * hashed(cell.as_ivec3() + corner);
     }
     sum
@@ -73,9 +65,7 @@ fn noise(p: DVec3) -> f64 {
 /// A value from -1 to 1 for a whole point (the finaliser of SplitMix64).
 fn hashed(p: IVec3) -> f64 {
     let mut h = [p.x, p.y, p.z].iter().fold(0x1f2e_u64, |h, &c| {
-        (h ^ u64::from(c.cast_unsigned()))
-            .wrapping_mul(0x9e37_79b9_7f4a_7c15)
-            .rotate_left(23)
+        (h ^ u64::from(c.cast_unsigned())).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23)
     });
     h = (h ^ (h >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     h = (h ^ (h >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -102,12 +92,7 @@ fn on_wall(mesh: &Mesh, id: &str, near: DVec3, off_m: f64) -> Option<Sensor> {
 /// The cave.
 pub fn cave() -> Scene {
     let rim = DVec3::splat(0.5);
-    let mut samples = Samples::of(
-        DVec3::ZERO - rim,
-        DVec3::new(16.6, 12.0, 5.2) + rim,
-        STEP_M,
-        field,
-    );
+    let mut samples = Samples::of(DVec3::ZERO - rim, DVec3::new(16.6, 12.0, 5.2) + rim, STEP_M, field);
     samples.keep_largest_void();
     let mesh = samples.surface();
 
@@ -141,25 +126,15 @@ pub fn cave() -> Scene {
         ("d_wall_off", DVec3::new(8.3, 10.7, 2.6), 0.001),
         ("e_floor_on", DVec3::new(2.6, 9.4, 2.0), 0.0),
     ];
-    sensors.extend(
-        walls
-            .iter()
-            .filter_map(|(id, near, off_m)| on_wall(&mesh, id, *near, *off_m)),
-    );
+    sensors.extend(walls.iter().filter_map(|(id, near, off_m)| on_wall(&mesh, id, *near, *off_m)));
 
     Scene {
         name: "cave",
         mesh,
         materials: vec![],
         lights: vec![
-            Light::Point {
-                position: DVec3::new(2.47, 3.29, 2.83),
-                flux_w: 80.0,
-            },
-            Light::Point {
-                position: DVec3::new(14.13, 5.37, 2.57),
-                flux_w: 30.0,
-            },
+            Light::Point { position: DVec3::new(2.47, 3.29, 2.83), flux_w: 80.0 },
+            Light::Point { position: DVec3::new(14.13, 5.37, 2.57), flux_w: 30.0 },
         ],
         voxel_m: 0.15,
         tables: vec![Table {

@@ -24,10 +24,7 @@ pub fn check(scene: &Scene) -> Result<(), String> {
         for sensor in &table.sensors {
             let p = sensor.position + sensor.normal.unwrap_or_default() * OFF_WALL_M;
             if !is_inside(&scene.mesh, p) {
-                return Err(format!(
-                    "{name}: sensor {} at {p} lies outside the void",
-                    sensor.id
-                ));
+                return Err(format!("{name}: sensor {} at {p} lies outside the void", sensor.id));
             }
             if !seen.insert(&sensor.id) {
                 return Err(format!("{name}: sensor {} occurs twice", sensor.id));
@@ -49,9 +46,7 @@ fn check_closed(mesh: &Mesh) -> Result<(), String> {
     for (&(a, b), &count) in &walks {
         if count != 1 || walks.get(&(b, a)) != Some(&1) {
             let (p, q) = (mesh.vertices[a], mesh.vertices[b]);
-            return Err(format!(
-                "the mesh is not a closed surface at the edge {p} to {q}"
-            ));
+            return Err(format!("the mesh is not a closed surface at the edge {p} to {q}"));
         }
     }
     Ok(())
@@ -66,8 +61,7 @@ fn is_inside(mesh: &Mesh, p: DVec3) -> bool {
             let [a, b, c] = [polygon[0], polygon[i], polygon[i + 1]].map(|v| mesh.vertices[v] - p);
             let (la, lb, lc) = (a.length(), b.length(), c.length());
             let volume = a.dot(b.cross(c));
-            half_angle +=
-                volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+            half_angle += volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
         }
     }
     // Normals into the void make the winding negative.

@@ -51,11 +51,7 @@ fn plan() -> Plan {
 /// The first `count` points of the R3 sequence (M. Roberts 2018, powers of the root of x^4 = x + 1) that lie clear in
 /// the void.
 fn spread(plan: &Plan, count: usize) -> Vec<Sensor> {
-    const RATIOS: DVec3 = DVec3::new(
-        0.819_172_513_396_164,
-        0.671_043_606_703_789,
-        0.549_700_477_901_970,
-    );
+    const RATIOS: DVec3 = DVec3::new(0.819_172_513_396_164, 0.671_043_606_703_789, 0.549_700_477_901_970);
     let (low, high) = plan.bounds();
     (1..)
         .map(|i| low + (high - low) * (RATIOS * f64::from(i) + 0.5).fract())
@@ -69,21 +65,13 @@ fn spread(plan: &Plan, count: usize) -> Vec<Sensor> {
 /// The gallery at three reflectances, and its 200 sensors for charts.
 pub fn gallery() -> Scene {
     let plan = plan();
-    let variant = |name, about, reflectance, sensors, reference| Variant {
-        name,
-        about,
-        reflectance,
-        sensors,
-        reference,
-    };
+    let variant =
+        |name, about, reflectance, sensors, reference| Variant { name, about, reflectance, sensors, reference };
     Scene {
         name: "gallery",
         mesh: plan.mesh(|_| ""),
         materials: vec![],
-        lights: vec![Light::Point {
-            position: LIGHT,
-            flux_w: 100.0,
-        }],
+        lights: vec![Light::Point { position: LIGHT, flux_w: 100.0 }],
         voxel_m: 0.1,
         tables: vec![
             Table {
@@ -113,20 +101,8 @@ pub fn gallery() -> Scene {
                 "sensors.csv",
                 "reference.csv",
             ),
-            variant(
-                "gallery_r02",
-                "The gallery with dark walls.",
-                0.2,
-                "sensors.csv",
-                "reference_r02.csv",
-            ),
-            variant(
-                "gallery_r08",
-                "The gallery with bright walls.",
-                0.8,
-                "sensors.csv",
-                "reference_r08.csv",
-            ),
+            variant("gallery_r02", "The gallery with dark walls.", 0.2, "sensors.csv", "reference_r02.csv"),
+            variant("gallery_r08", "The gallery with bright walls.", 0.8, "sensors.csv", "reference_r08.csv"),
             variant(
                 "gallery_200",
                 "The gallery with 200 sensors, for charts of speed against accuracy.",

@@ -13,14 +13,8 @@ use crate::scene::Mesh;
 const NEAREST: f64 = 0.12;
 
 /// The six tetrahedra of a cube as walks from corner 0 to corner 7, a bit an axis.
-const TETRAHEDRA: [[usize; 4]; 6] = [
-    [0, 1, 3, 7],
-    [0, 1, 5, 7],
-    [0, 2, 3, 7],
-    [0, 2, 6, 7],
-    [0, 4, 5, 7],
-    [0, 4, 6, 7],
-];
+const TETRAHEDRA: [[usize; 4]; 6] =
+    [[0, 1, 3, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 4, 6, 7]];
 
 /// Field values on the points of a lattice; the void is where they are positive.
 pub struct Samples {
@@ -35,15 +29,8 @@ impl Samples {
     pub fn of(min: DVec3, max: DVec3, step_m: f64, field: impl Fn(DVec3) -> f64) -> Self {
         let span = (max - min) / step_m;
         let size = [span.x, span.y, span.z].map(|s| s.ceil() as usize + 1);
-        let mut samples = Samples {
-            origin: min,
-            step_m,
-            size,
-            values: Vec::new(),
-        };
-        samples.values = (0..size.iter().product())
-            .map(|i| field(samples.point(i)))
-            .collect();
+        let mut samples = Samples { origin: min, step_m, size, values: Vec::new() };
+        samples.values = (0..size.iter().product()).map(|i| field(samples.point(i))).collect();
         samples
     }
 
@@ -87,9 +74,8 @@ impl Samples {
             for y in 0..ny - 1 {
                 for x in 0..nx - 1 {
                     for tetrahedron in TETRAHEDRA {
-                        let corners = tetrahedron.map(|c| {
-                            (x + (c & 1)) + nx * ((y + (c >> 1 & 1)) + ny * (z + (c >> 2)))
-                        });
+                        let corners =
+                            tetrahedron.map(|c| (x + (c & 1)) + nx * ((y + (c >> 1 & 1)) + ny * (z + (c >> 2))));
                         let (void, matter): (Vec<usize>, Vec<usize>) =
                             corners.iter().partition(|&&i| self.values[i] > 0.0);
                         let Some(&towards) = void.first() else {
@@ -104,15 +90,10 @@ impl Samples {
                         };
                         // One corner cut off gives a triangle, two and two a quad.
                         let ring: Vec<usize> = match (void.as_slice(), matter.as_slice()) {
-                            ([a], others) | (others, [a]) => {
-                                others.iter().map(|&b| crossing(*a, b)).collect()
+                            ([a], others) | (others, [a]) => others.iter().map(|&b| crossing(*a, b)).collect(),
+                            ([a, b], [c, d]) => {
+                                vec![crossing(*a, *c), crossing(*a, *d), crossing(*b, *d), crossing(*b, *c)]
                             }
-                            ([a, b], [c, d]) => vec![
-                                crossing(*a, *c),
-                                crossing(*a, *d),
-                                crossing(*b, *d),
-                                crossing(*b, *c),
-                            ],
                             _ => continue,
                         };
                         for i in 1..ring.len() - 1 {
@@ -127,11 +108,7 @@ impl Samples {
             .into_iter()
             .map(|(towards, [a, b, c])| {
                 let [p, q, r] = [a, b, c].map(|i| mesh.vertices[i]);
-                if (q - p).cross(r - p).dot(towards - p) >= 0.0 {
-                    vec![a, b, c]
-                } else {
-                    vec![a, c, b]
-                }
+                if (q - p).cross(r - p).dot(towards - p) >= 0.0 { vec![a, b, c] } else { vec![a, c, b] }
             })
             .collect();
         mesh.groups = vec![("", facing)];

@@ -28,17 +28,9 @@ use std::error::Error;
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = std::env::args_os()
-        .nth(1)
-        .map_or_else(|| PathBuf::from("scenes"), PathBuf::from);
-    let scenes = [
-        rooms::furnace(),
-        rooms::two_rooms(),
-        gallery::gallery(),
-        rooms::corridor(),
-        cave::cave(),
-        tower::tower(),
-    ];
+    let root = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("scenes"), PathBuf::from);
+    let scenes =
+        [rooms::furnace(), rooms::two_rooms(), gallery::gallery(), rooms::corridor(), cave::cave(), tower::tower()];
     for scene in &scenes {
         check::check(scene)?;
         scene.write(&root)?;

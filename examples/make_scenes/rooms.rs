@@ -18,9 +18,7 @@ pub fn furnace() -> Scene {
     let size = SQUARES.map(|n| n as f64 * SQUARE_M);
     let along = |axis: usize| -> Vec<f64> {
         (0..SQUARES[axis])
-            .flat_map(|i| {
-                [-0.5, 0.5].map(|side| (i as f64 + 0.5 + side / f64::sqrt(3.0)) * SQUARE_M)
-            })
+            .flat_map(|i| [-0.5, 0.5].map(|side| (i as f64 + 0.5 + side / f64::sqrt(3.0)) * SQUARE_M))
             .collect()
     };
 
@@ -53,10 +51,7 @@ pub fn furnace() -> Scene {
         name: "furnace",
         mesh: Plan::default().void([0.0; 3], size).mesh(|_| ""),
         materials: vec![],
-        lights: vec![Light::Point {
-            position: DVec3::new(1.69, 1.43, 1.61),
-            flux_w: 100.0,
-        }],
+        lights: vec![Light::Point { position: DVec3::new(1.69, 1.43, 1.61), flux_w: 100.0 }],
         voxel_m: 0.1,
         tables: vec![Table {
             file: "sensors.csv",
@@ -86,23 +81,11 @@ pub fn two_rooms() -> Scene {
         mesh: plan.mesh(floor_wall_ceiling),
         materials: vec![
             // Coloured on purpose: its reflectance is the Rec. 709 luminance, 0.325.
-            Material {
-                name: "floor",
-                rgb: [0.45, 0.30, 0.20],
-            },
-            Material {
-                name: "wall",
-                rgb: [0.6, 0.6, 0.6],
-            },
-            Material {
-                name: "ceiling",
-                rgb: [0.8, 0.8, 0.8],
-            },
+            Material { name: "floor", rgb: [0.45, 0.30, 0.20] },
+            Material { name: "wall", rgb: [0.6, 0.6, 0.6] },
+            Material { name: "ceiling", rgb: [0.8, 0.8, 0.8] },
         ],
-        lights: vec![Light::Point {
-            position: DVec3::new(1.63, 2.47, 2.13),
-            flux_w: 60.0,
-        }],
+        lights: vec![Light::Point { position: DVec3::new(1.63, 2.47, 2.13), flux_w: 60.0 }],
         voxel_m: 0.1,
         tables: vec![Table {
             file: "sensors.csv",
@@ -183,10 +166,7 @@ pub fn corridor() -> Scene {
         name: "corridor",
         mesh: plan.mesh(|_| ""),
         materials: vec![],
-        lights: vec![Light::Point {
-            position: DVec3::new(0.67, 0.91, 1.87),
-            flux_w: 50.0,
-        }],
+        lights: vec![Light::Point { position: DVec3::new(0.67, 0.91, 1.87), flux_w: 50.0 }],
         voxel_m: 0.1,
         tables: vec![Table {
             file: "sensors.csv",

@@ -85,20 +85,12 @@ fn tidy(p: [f64; 3]) -> DVec3 {
 
 /// A sensor of scalar irradiance.
 pub fn scalar(id: impl Into<String>, position: [f64; 3]) -> Sensor {
-    Sensor {
-        id: id.into(),
-        position: tidy(position),
-        normal: None,
-    }
+    Sensor { id: id.into(), position: tidy(position), normal: None }
 }
 
 /// A sensor that faces along `normal` (unit length).
 pub fn planar(id: impl Into<String>, position: [f64; 3], normal: [f64; 3]) -> Sensor {
-    Sensor {
-        id: id.into(),
-        position: tidy(position),
-        normal: Some(DVec3::from(normal)),
-    }
+    Sensor { id: id.into(), position: tidy(position), normal: Some(DVec3::from(normal)) }
 }
 
 impl Mesh {
@@ -113,10 +105,7 @@ impl Mesh {
     }
 
     fn obj(&self, scene: &Scene) -> String {
-        let mut text = format!(
-            "{MADE_BY}# {}, metres, Z up, normals into the void\n",
-            scene.name
-        );
+        let mut text = format!("{MADE_BY}# {}, metres, Z up, normals into the void\n", scene.name);
         if !scene.materials.is_empty() {
             let _ = writeln!(text, "mtllib {}.mtl", scene.name);
         }
@@ -147,11 +136,7 @@ impl Table {
         }
         // A table of scalar sensors alone needs no columns for normals.
         let has_normals = self.sensors.iter().any(|s| s.normal.is_some());
-        text.push_str(if has_normals {
-            "id,x,y,z,nx,ny,nz\n"
-        } else {
-            "id,x,y,z\n"
-        });
+        text.push_str(if has_normals { "id,x,y,z,nx,ny,nz\n" } else { "id,x,y,z\n" });
         for sensor in &self.sensors {
             let p = sensor.position;
             let _ = write!(text, "{},{},{},{}", sensor.id, p.x, p.y, p.z);
@@ -171,10 +156,7 @@ impl Scene {
     pub fn write(&self, root: &Path) -> io::Result<()> {
         let folder = root.join(self.name);
         fs::create_dir_all(&folder)?;
-        fs::write(
-            folder.join(format!("{}.obj", self.name)),
-            self.mesh.obj(self),
-        )?;
+        fs::write(folder.join(format!("{}.obj", self.name)), self.mesh.obj(self))?;
         if !self.materials.is_empty() {
             fs::write(folder.join(format!("{}.mtl", self.name)), self.mtl())?;
         }
@@ -182,10 +164,7 @@ impl Scene {
             fs::write(folder.join(table.file), table.csv())?;
         }
         for variant in &self.variants {
-            fs::write(
-                folder.join(format!("{}.toml", variant.name)),
-                self.toml(variant),
-            )?;
+            fs::write(folder.join(format!("{}.toml", variant.name)), self.toml(variant))?;
         }
         Ok(())
     }
@@ -193,12 +172,7 @@ impl Scene {
     /// One line for the person who ran the program.
     pub fn summary(&self) -> String {
         let sensors: usize = self.tables.iter().map(|t| t.sensors.len()).sum();
-        format!(
-            "{}: {} triangles, {} lights, {sensors} sensors",
-            self.name,
-            self.mesh.triangles(),
-            self.lights.len()
-        )
+        format!("{}: {} triangles, {} lights, {sensors} sensors", self.name, self.mesh.triangles(), self.lights.len())
     }
 
     fn mtl(&self) -> String {
@@ -237,24 +211,13 @@ impl Light {
     fn toml(&self) -> String {
         let list = |p: &DVec3| format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z);
         match self {
-            Light::Point { position, flux_w } => format!(
-                "kind = \"point\"\nposition = {}\nflux_w = {flux_w:?}\n",
-                list(position)
-            ),
-            Light::Sphere {
-                center,
-                radius,
-                flux_w,
-            } => format!(
-                "kind = \"sphere\"\ncenter = {}\nradius = {radius:?}\nflux_w = {flux_w:?}\n",
-                list(center)
-            ),
-            Light::Quad {
-                corner,
-                u,
-                v,
-                flux_w,
-            } => format!(
+            Light::Point { position, flux_w } => {
+                format!("kind = \"point\"\nposition = {}\nflux_w = {flux_w:?}\n", list(position))
+            }
+            Light::Sphere { center, radius, flux_w } => {
+                format!("kind = \"sphere\"\ncenter = {}\nradius = {radius:?}\nflux_w = {flux_w:?}\n", list(center))
+            }
+            Light::Quad { corner, u, v, flux_w } => format!(
                 "kind = \"quad\"\ncorner = {}\nu = {}\nv = {}\nflux_w = {flux_w:?}\n",
                 list(corner),
                 list(u),

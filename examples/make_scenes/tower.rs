@@ -15,9 +15,8 @@ fn plan() -> Plan {
     let mut plan = Plan::default();
     for (floor, ceiling) in STOREYS {
         // The storey, and its door to the lift shaft.
-        plan = plan
-            .void([0.0, 0.0, floor], [9.13, 6.91, ceiling])
-            .void([9.13, 2.63, floor], [9.42, 3.57, floor + 2.06]);
+        plan =
+            plan.void([0.0, 0.0, floor], [9.13, 6.91, ceiling]).void([9.13, 2.63, floor], [9.42, 3.57, floor + 2.06]);
     }
     plan.void([9.42, 2.31, 0.0], [10.97, 3.89, 11.72])
         // Stair holes through the slabs.
@@ -38,29 +37,13 @@ pub fn tower() -> Scene {
         name: "tower",
         mesh: plan().mesh(floor_wall_ceiling),
         materials: vec![
-            Material {
-                name: "floor",
-                rgb: [0.45, 0.40, 0.35],
-            },
-            Material {
-                name: "wall",
-                rgb: [0.6, 0.6, 0.6],
-            },
-            Material {
-                name: "ceiling",
-                rgb: [0.75, 0.75, 0.75],
-            },
+            Material { name: "floor", rgb: [0.45, 0.40, 0.35] },
+            Material { name: "wall", rgb: [0.6, 0.6, 0.6] },
+            Material { name: "ceiling", rgb: [0.75, 0.75, 0.75] },
         ],
         lights: vec![
-            Light::Point {
-                position: DVec3::new(6.83, 4.97, 2.09),
-                flux_w: 40.0,
-            },
-            Light::Sphere {
-                center: DVec3::new(2.37, 4.71, 4.93),
-                radius: 0.15,
-                flux_w: 25.0,
-            },
+            Light::Point { position: DVec3::new(6.83, 4.97, 2.09), flux_w: 40.0 },
+            Light::Sphere { center: DVec3::new(2.37, 4.71, 4.93), radius: 0.15, flux_w: 25.0 },
             // Shines down: u x v points to -z.
             Light::Quad {
                 corner: DVec3::new(6.61, 3.87, 11.67),

@@ -213,7 +213,10 @@ pub(crate) mod tests {
 
     #[test]
     fn rays_leave_the_void_where_it_ends() {
-        let grid = boxes([20, 8, 8], &[(IVec3::new(2, 2, 2), IVec3::new(9, 6, 6)), (IVec3::new(12, 2, 2), IVec3::new(19, 6, 6))]);
+        let grid = boxes(
+            [20, 8, 8],
+            &[(IVec3::new(2, 2, 2), IVec3::new(9, 6, 6)), (IVec3::new(12, 2, 2), IVec3::new(19, 6, 6))],
+        );
         let matter = grid.matter();
         let from = Vec3::new(4.0, 4.0, 4.0);
         let leave = matter.leave_void(from, Vec3::X, 0.0);

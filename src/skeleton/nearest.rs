@@ -133,7 +133,8 @@ impl Slots {
             let mut around = [NO_SLOT; 27];
             for (side, slot) in around.iter_mut().enumerate() {
                 let [x, y, z] = [0, 1, 2].map(|axis| at[axis] + (side / [1, 3, 9][axis] % 3) as isize - 1);
-                let inside = [(x, across), (y, rows), (z, planes)].iter().all(|&(at, end)| at >= 0 && at < end as isize);
+                let inside =
+                    [(x, across), (y, rows), (z, planes)].iter().all(|&(at, end)| at >= 0 && at < end as isize);
                 if inside {
                     *slot = of_brick[x as usize + across * (y as usize + rows * z as usize)];
                 }

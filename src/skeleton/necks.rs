@@ -4,8 +4,8 @@
 //! the same one: a wide opening is crossed by several strands. A neck's plane is that of its narrowest section, turned
 //! until its area is least, because the curve seldom runs square through a door.
 
-use super::graph::Neck;
 use super::cells::Widths;
+use super::graph::Neck;
 use super::matter::Matter;
 use super::sections::Section;
 use glam::Vec3;

@@ -67,7 +67,9 @@ impl Skeleton {
             match edge.weight().neck {
                 None => ensure(a == b, "an edge between two cells crosses a neck")?,
                 Some(neck) => {
-                    let Some(joined) = self.necks.get(neck as usize) else { return Err("every neck of an edge exists") };
+                    let Some(joined) = self.necks.get(neck as usize) else {
+                        return Err("every neck of an edge exists");
+                    };
                     ensure(joined.cells == [a.min(b), a.max(b)], "a neck joins the cells of its edges")?;
                     crossed[neck as usize] = true;
                 }

@@ -92,11 +92,7 @@ fn nine_rooms_have_twelve_doors() {
 
 #[test]
 fn a_bend_is_no_neck() {
-    let corridor = [
-        ([3, 3, 3], [100, 18, 29]),
-        ([85, 3, 3], [100, 90, 29]),
-        ([85, 75, 3], [180, 90, 29]),
-    ];
+    let corridor = [([3, 3, 3], [100, 18, 29]), ([85, 3, 3], [100, 90, 29]), ([85, 75, 3], [180, 90, 29])];
     check(&carved([183, 93, 32], &corridor, &[]), 1, 0);
 }
 
@@ -115,8 +111,11 @@ fn a_corridor_with_doors_at_its_ends_is_a_cell() {
 #[test]
 fn a_long_open_passage_is_a_cell_and_a_short_one_a_neck() {
     let with = |length: i32| {
-        let blocks =
-            [([3, 3, 3], [43, 43, 29]), ([43, 16, 3], [43 + length, 28, 26]), ([43 + length, 3, 3], [83 + length, 43, 29])];
+        let blocks = [
+            ([3, 3, 3], [43, 43, 29]),
+            ([43, 16, 3], [43 + length, 28, 26]),
+            ([43 + length, 3, 3], [83 + length, 43, 29]),
+        ];
         carved([86 + length as usize, 46, 32], &blocks, &[])
     };
     check(&with(120), 3, 2);
