@@ -9,6 +9,7 @@ use super::{curve::Curve, necks, thin};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::rays::Rays;
 use crate::space::{Lattice, VoxelIndex};
+use crate::voxel::Voxels;
 use crate::voxel::bits::BitGrid;
 use crate::voxel::brick;
 use glam::{IVec3, Vec3};
@@ -106,7 +107,16 @@ const SMOOTH_STEPS: u16 = 6;
 const LEAST_SMOOTH_STEPS: u16 = 2;
 
 impl Skeleton {
-    /// Thins the void of some voxels and cuts its skeleton into cells. `rays` are those of the scene.
+    /// Thins the void of a scene and cuts its skeleton into cells: [`Skeleton::build_from`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `cancel` was raised.
+    pub fn build(voxels: &Voxels, rays: &Rays, progress: &dyn Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
+        Self::build_from(voxels.lattice, &voxels.void, rays, progress, cancel)
+    }
+
+    /// Thins a void and cuts its skeleton into cells. `rays` are those of the scene; without a surface in them all sizes
+    /// are the voxels'.
     ///
     /// Stages reported: those of [`thin`], `sections` (sections, radii, nearest nodes) and `cells`.
     /// Time: about 60 ns a void voxel and 50 us an edge, on one thread.
