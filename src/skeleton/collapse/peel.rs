@@ -166,6 +166,9 @@ impl Pass<'_> {
     fn visit<const A: usize, const B: usize, const C: usize>(&self, slab: &mut Slab, brick: usize, side: Side) {
         let stride = self.layout.stride;
         let below = brick - stride[A];
+        if self.border[brick][0] == 0 && (side == Side::Low || self.border[below][0] == 0) {
+            return;
+        }
         // Larger cells without another of their kind on the side they are taken from, at the place of the smaller cell
         // that bounds them there.
         let exposed = |here: &Cells, below: &Cells, plane: usize| {
