@@ -23,7 +23,7 @@ type Edge = (u32, usize, u32);
 impl Border {
     /// None so far.
     pub fn new(layout: &Layout) -> Self {
-        Self { cells: vec![[0; 8]; layout.len()], born: vec![[0; 3]; layout.len()] }
+        Self { cells: vec![[0; 8]; layout.count()], born: vec![[0; 3]; layout.count()] }
     }
 
     /// The cells of the border, by brick and the axes they span.
