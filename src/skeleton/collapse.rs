@@ -74,7 +74,7 @@ pub fn collapse(
             trials.entry(until + 1).or_default().push((brick, axis, 1 << bit));
         }
         let active = border.active(&layout, &candidates);
-        let pass = peel::Pass { layout: &layout, border: border.cells(), kept: &kept };
+        let pass = peel::Pass { layout: &layout, border: border.cells(), near: border.near(), kept: &kept };
         for axis in 0..3 {
             for side in [peel::Side::Low, peel::Side::High] {
                 pass.run(cells, &mut changed, &active, axis, side);
