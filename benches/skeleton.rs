@@ -1,29 +1,30 @@
 //! How long does thinning take, stage by stage, and how long do others take on the same array?
 //!
-//! `cargo bench --bench skeleton [-- --runs N] [--no-peers] [--write DIR]`
+//! `cargo bench --bench skeleton [-- [--runs N] [--no-peers] | --write DIR]`
 //!
-//! Two arrays of rooms joined by doors and shafts, about 6.6 and 12.8 million voxels, half of them void, the same each
-//! time. Prints medians over the runs, with one and with two threads. scikit-image, Kimimaro and edt are then timed on the
-//! first array, in the same run, where `python3` has them (`pip install scikit-image kimimaro edt`).
-//! `--write` keeps the arrays, and the skeletons drawn twice as large, as `.npy` files.
+//! Arrays of rooms joined by doors and shafts, about 6.6 and 12.8 million voxels, half of them void, the same each time.
+//! Prints medians over the runs, with one and with two threads. scikit-image, Kimimaro and edt are timed on the
+//! smaller arrays, in the same run, where `python3` has them (`pip install scikit-image kimimaro edt`).
+//! With `--write` no time is taken: small voids and their skeletons, drawn twice as large, are written as `.npy` files, for
+//! `peers/topology_gudhi.py`.
 
 use glam::IVec3;
-use lightvein::job::{Cancel, Progress};
+use lightvein::job::{Cancel, Progress, Quiet};
 use lightvein::skeleton::curve::Curve;
 use lightvein::skeleton::{thin, topology};
 use lightvein::voxel::bits::BitGrid;
 use ndarray::Array3;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::sync::Mutex;
 use std::time::Instant;
 
-/// Voxels from a room to the next.
-const PITCH: usize = 24;
-
-/// Voxels of wall past the last room.
-const WALL: usize = 5;
+/// The arrays: name, rooms along x, y, z, voxels from a room to the next, voxels of wall among them. Rooms of 3.7 m at
+/// 0.1 m voxels, or 1.9 m: the smaller they are, the more of the array is surface, and the less a peer that sweeps the
+/// whole array loses.
+const ARRAYS: [(&str, [usize; 3], usize, usize); 3] =
+    [("rooms-6m", [4, 4, 4], 45, 8), ("rooms-12m", [5, 5, 5], 45, 8), ("small-rooms-6m", [8, 8, 7], 24, 5)];
 
 /// The stages that the peers' work is compared with: all of thinning but the ties of floating solids, which they lack.
 const COMPARED: [&str; 6] = ["distance", "opening", "complex", "anchors", "collapse", "prune"];
@@ -32,13 +33,14 @@ fn main() {
     let args: Vec<String> = std::env::args().collect();
     let after = |flag: &str| args.iter().position(|arg| arg == flag).and_then(|at| args.get(at + 1));
     let runs = after("--runs").and_then(|runs| runs.parse().ok()).unwrap_or(9);
-    let written = after("--write").map(PathBuf::from);
-    let folder =
-        written.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("lightvein-{}", std::process::id())));
+    if let Some(folder) = after("--write") {
+        return write_for_check(Path::new(folder));
+    }
+    let folder = std::env::temp_dir().join(format!("lightvein-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
 
-    for (name, rooms) in [("rooms-6m", [8, 8, 7]), ("rooms-12m", [12, 8, 9])] {
-        let (size, bytes) = array_of_rooms(rooms);
+    for (name, rooms, pitch, wall) in ARRAYS {
+        let (size, bytes) = array_of_rooms(rooms, pitch, wall);
         let void = bytes.iter().filter(|byte| **byte == 1).count();
         println!(
             "{name}: {size:?}, {:.2} M voxels, {:.1}% void",
@@ -50,21 +52,41 @@ fn main() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             seconds = pool.install(|| time_stages(threads, size, &bytes, runs));
         }
-        let curve = thin(&BitGrid::from_bytes(size, &bytes), &lightvein::job::Quiet, &Cancel::new()).unwrap();
+        let curve = thin(&BitGrid::from_bytes(size, &bytes), &Quiet, &Cancel::new()).unwrap();
         println!("  {} vertices, {:?}\n", curve.vertices.len(), topology::of_curve(&curve));
 
-        let [x, y, z] = size;
-        let path = folder.join(format!("{name}.npy"));
-        ndarray_npy::write_npy(&path, &Array3::from_shape_vec((z, y, x), bytes).unwrap()).unwrap();
-        if written.is_some() {
-            ndarray_npy::write_npy(folder.join(format!("{name}-skeleton.npy")), &drawn(size, &curve)).unwrap();
-        }
-        if name == "rooms-6m" && !args.iter().any(|arg| arg == "--no-peers") {
+        if name.ends_with("6m") && !args.iter().any(|arg| arg == "--no-peers") {
+            let path = folder.join(format!("{name}.npy"));
+            ndarray_npy::write_npy(&path, &as_array(size, bytes)).unwrap();
             time_peers(&path, seconds);
         }
     }
-    if written.is_none() {
-        std::fs::remove_dir_all(&folder).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Writes voids of several kinds and their skeletons: rooms, rooms with floating specks, and noise.
+fn write_for_check(folder: &Path) {
+    std::fs::create_dir_all(folder).unwrap();
+    let (size, rooms) = array_of_rooms([2, 2, 2], 22, 4);
+    let mut random = random();
+    let mut specked = |share: usize, bytes: &[u8]| -> Vec<u8> {
+        bytes.iter().map(|byte| u8::from(*byte == 1 && random(1000) >= share)).collect()
+    };
+    let noise = vec![1; 40 * 40 * 40];
+    let volumes = [
+        ("rooms", size, rooms.clone()),
+        ("rooms-specks", size, specked(2, &rooms)),
+        ("rooms-many-specks", size, specked(20, &rooms)),
+        ("noise-30", [40; 3], specked(300, &noise)),
+        ("noise-60", [40; 3], specked(600, &noise)),
+        ("noise-90", [40; 3], specked(900, &noise)),
+    ];
+    for (name, size, bytes) in volumes {
+        let void = BitGrid::from_bytes(size, &bytes);
+        let curve = thin(&void, &Quiet, &Cancel::new()).unwrap();
+        println!("{name}: void {:?}, skeleton {:?}", topology::of_void(&void), topology::of_curve(&curve));
+        ndarray_npy::write_npy(folder.join(format!("{name}.npy")), &as_array(size, bytes)).unwrap();
+        ndarray_npy::write_npy(folder.join(format!("{name}-skeleton.npy")), &drawn(size, &curve)).unwrap();
     }
 }
 
@@ -106,8 +128,8 @@ fn time_peers(array: &Path, seconds: f64) {
 }
 
 /// Rooms of differing sizes on a grid, joined by doors to the side and shafts upwards; 1 is void, `[z][y][x]`.
-fn array_of_rooms(rooms: [usize; 3]) -> ([usize; 3], Vec<u8>) {
-    let size = rooms.map(|rooms| rooms * PITCH + WALL);
+fn array_of_rooms(rooms: [usize; 3], pitch: usize, wall: usize) -> ([usize; 3], Vec<u8>) {
+    let size = rooms.map(|rooms| rooms * pitch + wall);
     let mut bytes = vec![0; size.iter().product()];
     let mut carve = |low: [usize; 3], high: [usize; 3]| {
         for z in low[2]..high[2] {
@@ -116,32 +138,41 @@ fn array_of_rooms(rooms: [usize; 3]) -> ([usize; 3], Vec<u8>) {
             }
         }
     };
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    let mut random = |below: usize| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 33) as usize % below
-    };
+    let mut random = random();
     for room in 0..rooms.iter().product() {
         let at = [room % rooms[0], room / rooms[0] % rooms[1], room / (rooms[0] * rooms[1])];
-        let low = at.map(|along| WALL + PITCH * along);
-        let high = low.map(|low| low + 19 + random(2) - random(2));
+        let low = at.map(|along| wall + pitch * along);
+        let high = low.map(|low| low + pitch - wall + random(2) - random(2));
         carve(low, high);
         // A door at the floor for three in four neighbours to the side, a shaft in the middle for one in three above.
         for axis in 0..3 {
             let joined = if axis == 2 { random(3) == 0 } else { random(4) > 0 };
             if joined && at[axis] + 1 < rooms[axis] {
-                let (mut from, mut to) = (low.map(|low| low + 7), low.map(|low| low + 13));
+                let (mut from, mut to) = (low.map(|low| low + pitch / 3), low.map(|low| low + pitch / 3 + 6));
                 if axis != 2 {
                     (from[2], to[2]) = (low[2], low[2] + 12);
                 }
-                (from[axis], to[axis]) = (high[axis], low[axis] + PITCH);
+                (from[axis], to[axis]) = (high[axis], low[axis] + pitch);
                 carve(from, to);
             }
         }
     }
     (size, bytes)
+}
+
+/// Whole numbers below what is asked for, that look random and are the same each time.
+fn random() -> impl FnMut(usize) -> usize {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    move |below| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 33) as usize % below
+    }
+}
+
+fn as_array([x, y, z]: [usize; 3], bytes: Vec<u8>) -> Array3<u8> {
+    Array3::from_shape_vec((z, y, x), bytes).unwrap()
 }
 
 /// A curve as voxels of half the size: a vertex at twice its place, an edge between; `[z][y][x]`.

@@ -52,8 +52,8 @@ pub fn collapse(
     let layout = *complex.layout();
     let cells = complex.cells_mut();
     let mut border = Border::new(&layout);
-    let mut changed = vec![0; layout.len()];
-    let mut kept = vec![[0; 4]; layout.len()];
+    let mut changed = vec![0; layout.count()];
+    let mut kept = vec![[0; 4]; layout.count()];
     for (brick, bit) in anchors.iter().filter_map(|corner| layout.place(*corner)) {
         kept[brick][0] |= 1 << bit;
     }
@@ -74,7 +74,7 @@ pub fn collapse(
             trials.entry(until + 1).or_default().push((brick, axis, 1 << bit));
         }
         let active = border.active(&layout, &candidates);
-        let pass = peel::Pass { layout: &layout, border: border.cells(), kept: &kept };
+        let pass = peel::Pass { layout: &layout, border: border.cells(), near: border.near(), kept: &kept };
         for axis in 0..3 {
             for side in [peel::Side::Low, peel::Side::High] {
                 pass.run(cells, &mut changed, &active, axis, side);
@@ -122,7 +122,7 @@ fn cut<'a, T>(mut array: &'a mut [T], begins: &[usize]) -> Vec<&'a mut [T]> {
 /// The bricks that what was taken in and below these may concern in the next layer. Clears what it reads.
 fn spread(layout: &Layout, changed: &mut [u64], bricks: &[u32]) -> Vec<u32> {
     let stride = layout.stride;
-    let mut marks = vec![0_u64; layout.len().div_ceil(64)];
+    let mut marks = vec![0_u64; layout.count().div_ceil(64)];
     for brick in bricks.iter().map(|brick| *brick as usize) {
         let changed = std::mem::take(&mut changed[brick]);
         if changed == 0 {

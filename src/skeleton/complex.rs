@@ -55,13 +55,13 @@ impl Layout {
     }
 
     /// How many bricks there are, those in front and behind included.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.bricks.iter().product::<usize>() + 2 * self.guard
     }
 
     /// Whether a brick may have cells: neither in front of the first nor behind the last one.
     pub fn holds(&self, brick: usize) -> bool {
-        (self.guard..self.len() - self.guard).contains(&brick)
+        (self.guard..self.count() - self.guard).contains(&brick)
     }
 
     /// The brick of a lattice point and its bit there; `None` off the lattice.
@@ -89,7 +89,7 @@ impl Complex {
     /// The closure of a void: its voxels with all their faces, edges and points.
     pub fn closure(void: &BitGrid) -> Self {
         let layout = Layout::new(void.size());
-        let mut cells = vec![[0; 8]; layout.len()];
+        let mut cells = vec![[0; 8]; layout.count()];
         let [across, rows, planes] = void.bricks();
         let slab = layout.stride[2];
         let nothing = vec![0; across];

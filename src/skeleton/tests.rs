@@ -59,7 +59,8 @@ fn random_void(seed: u64) -> BitGrid {
     (0..8).for_each(|_| _ = random.next());
     let size = [0; 3].map(|_: i32| 6 + (random.next() * 7.0) as usize);
     let mut void = BitGrid::new(size);
-    let (bites, share) = if seed % 2 == 0 { (0, 0.05 + 0.9 * random.next()) } else { (4, 0.15 * random.next()) };
+    let (bites, share) =
+        if seed.is_multiple_of(2) { (0, 0.05 + 0.9 * random.next()) } else { (4, 0.15 * random.next()) };
     for _ in 0..bites {
         let low = size.map(|voxels| (random.next() * voxels as f64 * 0.7) as i32);
         let high = low.map(|low| low + 2 + (random.next() * 8.0) as i32);

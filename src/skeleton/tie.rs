@@ -45,7 +45,7 @@ pub fn tie(complex: &mut Complex, void: &BitGrid, cancel: &Cancel) -> Result<usi
     let mut steps = 0_u32;
     while let Some(voxel) = fronts.pop_front() {
         steps = steps.wrapping_add(1);
-        if steps % 4096 == 0 {
+        if steps.is_multiple_of(4096) {
             cancel.check()?;
         }
         let owner = search.owner(voxel).unwrap_or(WALLS);

@@ -61,7 +61,7 @@ impl Chessboard {
                 sweep_plane(flat, set, across, |a, b| a & b);
             });
             inner.par_chunks_mut(plane).zip(cover.par_chunks_mut(plane)).enumerate().for_each(|(z, (inner, cover))| {
-                sweep_across(inner, &flat, z, |a, b| a & b);
+                sweep_across(inner, &flat, across, z, |a, b| a & b);
                 sweep_plane(cover, inner, across, |a, b| a | b);
             });
 
@@ -72,7 +72,7 @@ impl Chessboard {
                 .zip(flat.par_chunks_mut(plane))
                 .enumerate()
                 .map(|(z, (words, dilated))| {
-                    sweep_across(dilated, &cover, z, |a, b| a | b);
+                    sweep_across(dilated, &cover, across, z, |a, b| a | b);
                     let first = z * plane;
                     let mut found = Vec::new();
                     for (brick, (slices, dilated)) in words.chunks_exact_mut(slices).zip(dilated.iter()).enumerate() {
@@ -113,6 +113,10 @@ fn sweep_plane(out: &mut [u64], plane: &[u64], across: usize, join: impl Fn(u64,
     let row = |y: usize| if y < rows { &plane[y * across..][..across] } else { &nothing };
     for (y, out) in out.chunks_exact_mut(across).enumerate() {
         let (below, here, above) = (row(y.wrapping_sub(1)), row(y), row(y + 1));
+        if [below, here, above].into_iter().all(is_empty) {
+            out.fill(0);
+            continue;
+        }
         for ((line, word), (below, above)) in line[1..].iter_mut().zip(here).zip(below.iter().zip(above)) {
             let both = join(from_below::<1>(*word, *below), from_above::<1>(*word, *above));
             *line = join(*word, both);
@@ -124,16 +128,27 @@ fn sweep_plane(out: &mut [u64], plane: &[u64], across: usize, join: impl Fn(u64,
     }
 }
 
-/// Joins each voxel of plane `z` of bricks with those below and above it; beyond the grid is nothing.
-fn sweep_across(out: &mut [u64], words: &[u64], z: usize, join: impl Fn(u64, u64) -> u64) {
+/// Joins each voxel of plane `z` of bricks with those below and above it; beyond the grid is nothing. `out` is overwritten.
+fn sweep_across(out: &mut [u64], words: &[u64], across: usize, z: usize, join: impl Fn(u64, u64) -> u64) {
     let plane = out.len();
-    let nothing = vec![0; plane];
-    let at =
-        |z: usize| if (z + 1).saturating_mul(plane) <= words.len() { &words[z * plane..][..plane] } else { &nothing };
-    let (below, here, above) = (if z == 0 { &nothing } else { at(z - 1) }, at(z), at(z + 1));
-    for ((out, word), (below, above)) in out.iter_mut().zip(here).zip(below.iter().zip(above)) {
-        *out = join(*word, join(from_below::<2>(*word, *below), from_above::<2>(*word, *above)));
+    let nothing = vec![0; across];
+    for (y, out) in out.chunks_exact_mut(across).enumerate() {
+        let row = |z: usize| words.get(z.saturating_mul(plane).saturating_add(y * across)..).unwrap_or(&[]);
+        let row = |z: usize| row(z).get(..across).unwrap_or(&nothing);
+        let (below, here, above) = (row(z.wrapping_sub(1)), row(z), row(z + 1));
+        if [below, here, above].into_iter().all(is_empty) {
+            out.fill(0);
+            continue;
+        }
+        for ((out, word), (below, above)) in out.iter_mut().zip(here).zip(below.iter().zip(above)) {
+            *out = join(*word, join(from_below::<2>(*word, *below), from_above::<2>(*word, *above)));
+        }
     }
+}
+
+/// Whether no voxel is set. Most rows are empty once small distances are done.
+fn is_empty(row: &[u64]) -> bool {
+    row.iter().fold(0, |any, word| any | word) == 0
 }
 
 /// The voxels of some bricks as a set on a grid.

@@ -15,6 +15,7 @@ pub struct Border {
     cells: Vec<Cells>,
     /// Edges along x, y, z without a face.
     born: Vec<[u64; 3]>,
+    near: Vec<u8>,
 }
 
 /// An edge: its brick, its axis and its bit.
@@ -23,7 +24,7 @@ type Edge = (u32, usize, u32);
 impl Border {
     /// None so far.
     pub fn new(layout: &Layout) -> Self {
-        Self { cells: vec![[0; 8]; layout.len()], born: vec![[0; 3]; layout.len()] }
+        Self { cells: vec![[0; 8]; layout.count()], born: vec![[0; 3]; layout.count()], near: vec![0; layout.count()] }
     }
 
     /// The cells of the border, by brick and the axes they span.
@@ -72,12 +73,29 @@ impl Border {
     }
 
     /// Those of the candidates that have any border in or below them: nothing can be taken elsewhere.
-    pub fn active(&self, layout: &Layout, candidates: &[u32]) -> Vec<u32> {
-        let any = |brick: usize| self.cells[brick][0] != 0;
-        let active = |brick: &usize| any(*brick) || layout.stride.iter().any(|stride| any(brick - stride));
-        candidates.iter().filter(|brick| active(&(**brick as usize))).copied().collect()
+    pub fn active(&mut self, layout: &Layout, candidates: &[u32]) -> Vec<u32> {
+        let mut active = Vec::with_capacity(candidates.len());
+        for brick in candidates {
+            let at = *brick as usize;
+            let any = |brick: usize, flag: u8| if self.cells[brick][0] == 0 { 0 } else { flag };
+            let below = [0, 1, 2].map(|axis| any(at - layout.stride[axis], 1 << axis));
+            self.near[at] = any(at, HERE) | below[0] | below[1] | below[2];
+            if self.near[at] != 0 {
+                active.push(*brick);
+            }
+        }
+        active
+    }
+
+    /// For each active brick whether there is border in it ([`HERE`]) and in the bricks below it along x, y, z (bits 0, 1,
+    /// 2).
+    pub fn near(&self) -> &[u8] {
+        &self.near
     }
 }
+
+/// There is border in the brick itself.
+pub const HERE: u8 = 8;
 
 /// The border in a brick; `lower` is that in the bricks below it along x, y, z, `bare` its edges without a face.
 #[inline(always)]

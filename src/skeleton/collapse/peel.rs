@@ -8,6 +8,7 @@
 //! - a pass reads what the pass before took in a brick and the bricks below it along the other two axes: there bricks are
 //!   visited upwards, and later passes do not touch those cells.
 
+use super::border::HERE;
 use super::{cut, part, slabs};
 use crate::skeleton::complex::{CUBES, Cells, Layout, across};
 use crate::voxel::brick::{from_above, from_below};
@@ -25,6 +26,8 @@ pub struct Pass<'a> {
     pub layout: &'a Layout,
     /// The cells that may go.
     pub border: &'a [Cells],
+    /// Where there are any: see [`Border::near`](super::border::Border::near).
+    pub near: &'a [u8],
     /// Points, and edges along x, y, z, that may not.
     pub kept: &'a [[u64; 4]],
 }
@@ -166,6 +169,10 @@ impl Pass<'_> {
     fn visit<const A: usize, const B: usize, const C: usize>(&self, slab: &mut Slab, brick: usize, side: Side) {
         let stride = self.layout.stride;
         let below = brick - stride[A];
+        let near = if side == Side::Low { HERE } else { HERE | 1 << A };
+        if self.near[brick] & near == 0 {
+            return;
+        }
         // Larger cells without another of their kind on the side they are taken from, at the place of the smaller cell
         // that bounds them there.
         let exposed = |here: &Cells, below: &Cells, plane: usize| {
