@@ -60,7 +60,7 @@ fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error>> {
     let sources = lightvein::light::Sources::of(scene);
     let voxels = voxelise(scene, &rays, &places_of_patches(scene, &sources), VOXEL_M, u64::MAX, &progress, &cancel)?;
     lap();
-    let skeleton = Skeleton::build_from(voxels.lattice, &voxels.void, &rays, &progress, &cancel)?;
+    let skeleton = Skeleton::build(&voxels, &rays, &progress, &cancel)?;
     lap();
     let model = Model::of(rays, sources, voxels, skeleton);
     let probes = model.probes_at_sensors(scene);

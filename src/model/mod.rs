@@ -94,7 +94,7 @@ impl Model {
         progress.end();
 
         progress.begin("skeleton", 0);
-        let skeleton = Skeleton::build_from(voxels.lattice, &voxels.void, &rays, progress, cancel)?;
+        let skeleton = Skeleton::build(&voxels, &rays, progress, cancel)?;
         progress.end();
 
         Ok(Self::of(rays, sources, voxels, skeleton))

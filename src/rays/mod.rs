@@ -80,12 +80,6 @@ pub struct Rays {
     epsilon_m: f32,
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Body {
-    Triangle([Vec3; 3]),
-    Sphere { centre_m: Vec3, radius_m: f32 },
-}
-
 impl std::fmt::Debug for Rays {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         out.debug_struct("Rays").field("bodies", &self.bodies.len()).field("epsilon_m", &self.epsilon_m).finish()
