@@ -85,7 +85,7 @@ fn loading_can_be_cancelled() {
 struct Open(std::sync::atomic::AtomicI64);
 
 impl lightvein::job::Progress for Open {
-    fn begin(&self, stage: &'static str, _total: u64) {
+    fn begin(&self, stage: &str, _total: u64) {
         let open = self.0.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
         assert_eq!(open, 0, "{stage} begins inside another stage");
     }

@@ -345,7 +345,7 @@ struct StopAtOnce<'a> {
 }
 
 impl Progress for StopAtOnce<'_> {
-    fn begin(&self, stage: &'static str, total: u64) {
+    fn begin(&self, stage: &str, total: u64) {
         assert_eq!((stage, total), ("trace", 1_000_000 / 128 + 1));
     }
     fn advance(&self, units: u64) {
