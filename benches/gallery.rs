@@ -18,7 +18,7 @@ use std::time::Instant;
 const RUNS: usize = 15;
 const VOXEL_M: f32 = 0.1;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/gallery.toml");
     let scene = Scene::load(&path, &Quiet, &Cancel::new())?;
     for threads in [1, 2] {
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error>> {
+fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let names = ["rays", "voxels", "skeleton", "places", "backward", "forward", "all"];
     let mut times_ms = vec![Vec::new(); names.len()];
     for run in 0..=RUNS {
@@ -49,7 +49,7 @@ fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// One run; milliseconds in the order of the names.
-fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error>> {
+fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error + Send + Sync>> {
     let (progress, cancel, settings) = (Quiet, Cancel::new(), Settings::default());
     let began = Instant::now();
     let mut laps_ms = Vec::new();

@@ -61,6 +61,23 @@ fn a_wrong_key_names_its_file_and_line() {
     refuses(&["analyse", scene.to_str().unwrap()], 1, "wrong.toml:4");
 }
 
+/// Every broken file of the corpus: exit code 1, one line, nothing on stdout, no file.
+#[test]
+fn the_program_answers_every_broken_file_by_one_line() {
+    let corpus = root().join("tests/bad_input");
+    let expected = fs::read_to_string(corpus.join("expected.tsv")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    for file in expected.lines().filter_map(|line| line.split('\t').next()) {
+        let path = corpus.join(file);
+        let output = run(&["analyse", path.to_str().unwrap(), "--json", "-o", out.to_str().unwrap()]);
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{file}: {stderr}");
+        assert!(stderr.starts_with("error: ") && stderr.lines().count() == 1, "{file}: {stderr}");
+        assert!(output.stdout.is_empty() && !out.exists(), "{file} left something behind");
+    }
+}
+
 #[test]
 fn a_grid_that_does_not_fit_says_which_voxel_would() {
     refuses(&["analyse", GALLERY, "--voxel", "0.00001"], 1, "--voxel");

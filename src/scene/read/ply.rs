@@ -167,7 +167,7 @@ fn read_property(body: &mut Body, property: &Property, corners: &mut Vec<u32>, c
         return Err(Kind::Outside { what: "length of a list".into(), value: length, bound: "whole numbers from 0" });
     }
     let length = length as u64;
-    body.expect(length.saturating_mul(if body.encoding == Encoding::Text { 1 } else { property.item.bytes() as u64 }))?;
+    body.require(length.saturating_mul(if body.encoding == Encoding::Text { 1 } else { property.item.bytes() as u64 }))?;
     for _ in 0..length {
         let value = body.value(property.item)?;
         if property.role == Role::Corners {
@@ -219,7 +219,7 @@ impl Body<'_> {
     }
 
     /// Fails if so many bytes cannot follow.
-    fn expect(&self, needed: u64) -> Result<(), Kind> {
+    fn require(&self, needed: u64) -> Result<(), Kind> {
         let left = if self.encoding == Encoding::Text { self.row.len() } else { self.rest.len() } as u64;
         if needed <= left { Ok(()) } else { Err(Kind::EndsEarly { what: "a list".into(), needed, left }) }
     }
