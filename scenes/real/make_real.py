@@ -67,7 +67,8 @@ def quake(data, name, about, parts, voxel_m):
         f"quake_{name}",
         f"""{about}
 Its own lights as point lights, switched and flickering ones lit: flux_w = {WATTS_PER_QUAKE_LIGHT} x the map's light value
-(300 -> 30 W; Quake has no watts). Light from the sky is left out. Data: GPL-2, id Software.""",
+(300 -> 30 W; Quake has no watts). Light from the sky is left out. The lights' places and
+values are the map's own: this file and its sensors, like the map, are under GPL-2 (id Software).""",
         [f"quake/{name}_{part}.obj" for part in parts],
         unit_m=QUAKE_UNIT_M,
         reflectance=0.4,

@@ -11,7 +11,7 @@
 
 mod body;
 
-use crate::scene::Scene;
+use crate::scene::{Material, Scene};
 use body::{Body, Shear, UNITS_PER_M, bodies_of};
 use glam::Vec3;
 use obvhs::aabb::Aabb;
@@ -91,11 +91,7 @@ impl Rays {
     pub fn new(scene: &Scene) -> Self {
         let mut parts: Vec<(Body, Surface, f32)> = Vec::with_capacity(scene.mesh.triangles.len());
         for triangle in 0..scene.mesh.triangles.len() {
-            let material =
-                scene.mesh.material_of.get(triangle).and_then(|&number| scene.materials.get(number as usize));
-            // Emissive faces are lights, and those are opaque.
-            let glazing = material.filter(|material| material.emission_w_m2_sr <= 0.0);
-            let transmittance = glazing.map_or(0.0, |material| material.transmittance);
+            let transmittance = scene.material(triangle).map_or(0.0, Material::passes);
             if let Some(corners_m) = scene.mesh.corners_m(triangle) {
                 parts.push((Body::Triangle(corners_m), Surface::Triangle(triangle as u32), transmittance));
             }

@@ -98,6 +98,30 @@ pub struct Material {
     pub emission_w_m2_sr: f32,
 }
 
+impl Material {
+    /// Share of the light that a face of it sends back diffusely: nothing where it is a light itself.
+    pub fn reflects(&self) -> f32 {
+        if self.emits() { 0.0 } else { self.reflectance }
+    }
+
+    /// Share of the light that passes straight through a face of it: nothing where it is a light itself.
+    pub fn passes(&self) -> f32 {
+        if self.emits() { 0.0 } else { self.transmittance }
+    }
+
+    /// Whether its faces are lights.
+    pub fn emits(&self) -> bool {
+        self.emission_w_m2_sr > 0.0
+    }
+}
+
+impl Scene {
+    /// The material of a triangle; `None` for a number beyond the mesh.
+    pub fn material(&self, triangle: usize) -> Option<&Material> {
+        self.materials.get(*self.mesh.material_of.get(triangle)? as usize)
+    }
+}
+
 /// A light of the scene file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {

@@ -122,10 +122,8 @@ impl Paths<'_> {
     /// Reflectance and transmittance of what was hit; `None` for lights and emissive faces, which are black.
     fn shares(&self, surface: Surface) -> Option<(f64, f64)> {
         let Surface::Triangle(triangle) = surface else { return None };
-        let material = *self.scene.mesh.material_of.get(triangle as usize)?;
-        let material = self.scene.materials.get(material as usize)?;
-        let black = material.emission_w_m2_sr > 0.0;
-        (!black).then_some((f64::from(material.reflectance), f64::from(material.transmittance)))
+        let material = self.scene.material(triangle as usize).filter(|material| !material.emits())?;
+        Some((f64::from(material.reflects()), f64::from(material.passes())))
     }
 }
 

@@ -127,10 +127,9 @@ fn counts_before(words: &[u64]) -> Vec<u32> {
 /// The triangle as a face of matter; `None` for glazing and for triangles without corners.
 fn face(scene: &Scene, lattice: &Lattice, triangle: u32) -> Option<Face> {
     let corners_m = scene.mesh.corners_m(triangle as usize)?;
-    let material = scene.mesh.material_of.get(triangle as usize);
-    let material = material.and_then(|&number| scene.materials.get(number as usize));
-    let glazing = material.is_some_and(|material| material.transmittance > 0.0);
-    let reflectance = material.map_or(0.0, |material| f64::from(material.reflectance));
+    let material = scene.material(triangle as usize);
+    let glazing = material.is_some_and(|material| material.passes() > 0.0);
+    let reflectance = material.map_or(0.0, |material| f64::from(material.reflects()));
     (!glazing).then(|| Face { corners: corners_m.map(|at| lattice.point_in_grid_exact(at)), reflectance })
 }
 
