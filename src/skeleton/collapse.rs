@@ -75,11 +75,7 @@ pub fn collapse(
         }
         let active = border.active(&layout, &candidates);
         let pass = peel::Pass { layout: &layout, border: border.cells(), near: border.near(), kept: &kept };
-        for axis in 0..3 {
-            for side in [peel::Side::Low, peel::Side::High] {
-                pass.run(cells, &mut changed, &active, axis, side);
-            }
-        }
+        pass.run(cells, &mut changed, &active);
         candidates = spread(&layout, &mut changed, &active);
         progress.advance(1);
         if candidates.is_empty() {

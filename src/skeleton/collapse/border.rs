@@ -11,10 +11,11 @@ use rayon::prelude::*;
 
 /// The border, and which edges have lost their last face so far.
 pub struct Border {
-    /// The cells of the border by the axes they span; in the place of points, where any other is.
+    /// The cells of the border by the axes they span; there are no points.
     cells: Vec<Cells>,
     /// Edges along x, y, z without a face.
     born: Vec<[u64; 3]>,
+    /// See [`Border::near`].
     near: Vec<u8>,
 }
 
@@ -39,9 +40,10 @@ impl Border {
         // The border of a brick builds on that of the bricks below it, so a slab begins two planes early, on a copy.
         let copies: Vec<Vec<Cells>> =
             begins.iter().map(|begin| self.cells[begin.saturating_sub(2 * plane)..*begin].to_vec()).collect();
-        let own = cut(&mut self.cells, &begins).into_iter().zip(cut(&mut self.born, &begins));
+        let others = cut(&mut self.born, &begins).into_iter().zip(cut(&mut self.near, &begins));
+        let own = cut(&mut self.cells, &begins).into_iter().zip(others);
         let mut parts: Vec<_> = own.zip(copies).zip(&begins).collect();
-        let births = parts.par_iter_mut().map(|(((own, born), copy), begin)| {
+        let births = parts.par_iter_mut().map(|(((own, (born, near)), copy), begin)| {
             let (begin, early) = (**begin, **begin - copy.len());
             for brick in part(candidates, early..begin).iter().map(|brick| *brick as usize) {
                 let bare = bare_edges(cells, brick, layout.stride);
@@ -59,6 +61,7 @@ impl Border {
                 };
                 let found = border_of(cells, brick, layout.stride, [lower(0), lower(1), lower(2)], bare);
                 own[brick - begin] = found;
+                near[brick - begin] = if found == [0; 8] { 0 } else { HERE };
                 if bare[0] | bare[1] | bare[2] == 0 {
                     continue;
                 }
@@ -77,18 +80,18 @@ impl Border {
         let mut active = Vec::with_capacity(candidates.len());
         for brick in candidates {
             let at = *brick as usize;
-            let any = |brick: usize, flag: u8| if self.cells[brick][0] == 0 { 0 } else { flag };
-            let below = [0, 1, 2].map(|axis| any(at - layout.stride[axis], 1 << axis));
-            self.near[at] = any(at, HERE) | below[0] | below[1] | below[2];
-            if self.near[at] != 0 {
+            let below = |axis: usize| (self.near[at - layout.stride[axis]] & HERE != 0) as u8;
+            let near = self.near[at] & HERE | below(0) | below(1) << 1 | below(2) << 2;
+            self.near[at] = near;
+            if near != 0 {
                 active.push(*brick);
             }
         }
         active
     }
 
-    /// For each active brick whether there is border in it ([`HERE`]) and in the bricks below it along x, y, z (bits 0, 1,
-    /// 2).
+    /// For each active brick whether there is border in it ([`HERE`]), and in the bricks below it along x, y, z (bits 0,
+    /// 1, 2).
     pub fn near(&self) -> &[u8] {
         &self.near
     }
@@ -117,8 +120,7 @@ fn border_of(cells: &[Cells], brick: usize, stride: [usize; 3], lower: [&Cells; 
     let along_x = y | from_below::<2>(y, lower[2][across(1)]) | z | from_below::<1>(z, lower[1][across(2)]) | free[0];
     let along_y = z | from_below::<0>(z, lower[0][across(2)]) | x | from_below::<2>(x, lower[2][across(0)]) | free[1];
     let along_z = x | from_below::<1>(x, lower[1][across(0)]) | y | from_below::<0>(y, lower[0][across(1)]) | free[2];
-    let any = cubes | x | y | z | along_x | along_y | along_z;
-    [any, along_x, along_y, z, along_z, y, x, cubes]
+    [0, along_x, along_y, z, along_z, y, x, cubes]
 }
 
 /// The edges along x, y, z of a brick without a face.

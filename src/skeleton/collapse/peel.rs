@@ -70,85 +70,90 @@ impl Below {
     }
 }
 
+/// Planes of bricks below a slab that its first plane depends on through the four directions along x and y: two for each,
+/// since edges there build on faces a plane lower, and points on edges.
+const DEPTH: usize = 8;
+
 impl Pass<'_> {
-    /// Takes the free pairs of one direction in some bricks, in ascending order; adds to `changed` where.
-    pub fn run(&self, cells: &mut [Cells], changed: &mut [u64], bricks: &[u32], axis: usize, side: Side) {
-        match axis {
-            0 => self.along::<0, 1, 2>(cells, changed, bricks, side),
-            1 => self.along::<1, 2, 0>(cells, changed, bricks, side),
-            _ => self.along::<2, 0, 1>(cells, changed, bricks, side),
+    /// Takes the free pairs of all six directions in some bricks, given in ascending order; adds to `changed` where.
+    pub fn run(&self, cells: &mut [Cells], changed: &mut [u64], bricks: &[u32]) {
+        self.sideways(cells, changed, bricks);
+        self.upright(cells, changed, bricks, Side::Low);
+        self.upright(cells, changed, bricks, Side::High);
+    }
+
+    /// The four directions along x and y. Each goes through the planes upwards, a plane behind the one before it: so all
+    /// work on planes that are still in the cache, and none sees what a later one did.
+    fn sideways(&self, cells: &mut [Cells], changed: &mut [u64], bricks: &[u32]) {
+        let begins = slabs(self.layout, bricks);
+        let plane = self.layout.stride[2];
+        let depth = |begin: usize, planes: usize| begin.saturating_sub(planes * plane);
+        let copies: Vec<Below> =
+            begins.iter().map(|begin| Below::copy(cells, depth(*begin, DEPTH + 1)..*begin)).collect();
+        let own = cut(cells, &begins).into_iter().zip(cut(changed, &begins));
+        let parts: Vec<_> = own.zip(copies).zip(&begins).collect();
+        parts.into_par_iter().for_each(|(((cells, changed), below), begin)| {
+            let bricks = part(bricks, depth(*begin, DEPTH)..begin + cells.len());
+            let mut slab = Slab { first: *begin, cells, changed, below };
+            let planes: Vec<_> = self.groups(bricks, plane).collect();
+            for step in 0..planes.len() + 3 {
+                let behind = |by: usize| step.checked_sub(by).and_then(|at| planes.get(at)).copied().unwrap_or(&[]);
+                self.plane::<0, 1, 2>(&mut slab, behind(0), Side::Low);
+                self.plane::<0, 1, 2>(&mut slab, behind(1), Side::High);
+                self.plane::<1, 2, 0>(&mut slab, behind(2), Side::Low);
+                self.plane::<1, 2, 0>(&mut slab, behind(3), Side::High);
+            }
+        });
+    }
+
+    /// Visits the bricks of one plane in the order a direction along x or y asks for.
+    fn plane<const A: usize, const B: usize, const C: usize>(&self, slab: &mut Slab, bricks: &[u32], side: Side) {
+        let row = self.layout.stride[1];
+        let mut visit = |brick: &u32| self.visit::<A, B, C>(slab, *brick as usize, side);
+        match (side, A) {
+            (Side::High, _) => bricks.iter().for_each(visit),
+            (Side::Low, 0) => self.groups(bricks, row).for_each(|row| row.iter().rev().for_each(&mut visit)),
+            (Side::Low, _) => {
+                let rows: Vec<_> = self.groups(bricks, row).collect();
+                rows.into_iter().rev().for_each(|row| row.iter().for_each(&mut visit));
+            }
         }
     }
 
-    fn along<const A: usize, const B: usize, const C: usize>(
-        &self,
-        cells: &mut [Cells],
-        changed: &mut [u64],
-        bricks: &[u32],
-        side: Side,
-    ) {
+    /// The directions along z, one at a time.
+    fn upright(&self, cells: &mut [Cells], changed: &mut [u64], bricks: &[u32], side: Side) {
         let begins = slabs(self.layout, bricks);
         let plane = self.layout.stride[2];
-        let copies: Vec<(Below, Below)> = begins
-            .iter()
-            .map(|begin| {
-                let lower = begin.saturating_sub(if A == 2 { plane } else { 2 * plane });
-                (Below::copy(cells, lower.saturating_sub(plane)..lower), Below::copy(cells, lower..*begin))
-            })
-            .collect();
+        let copies: Vec<Below> =
+            begins.iter().map(|begin| Below::copy(cells, begin.saturating_sub(plane)..*begin)).collect();
         let own = cut(cells, &begins).into_iter().zip(cut(changed, &begins));
         let parts: Vec<_> = own.zip(copies).zip(&begins).collect();
         let taken: Vec<Below> = parts
             .into_par_iter()
-            .map(|(((cells, changed), (under, mut below)), begin)| {
-                // Beside the axis a slab builds on what the one below will leave in its last plane after faces were
-                // taken. That takes two planes to work out.
-                if A != 2 {
-                    let first = below.first;
-                    let range = first..*begin;
-                    let slab = Slab { first, cells: &mut below.cells, changed: &mut below.changed, below: under };
-                    self.sweep::<A, B, C>(slab, part(bricks, range), side);
+            .map(|(((cells, changed), below), begin)| {
+                let bricks = part(bricks, *begin..begin + cells.len());
+                let mut slab = Slab { first: *begin, cells, changed, below };
+                let visit = |brick: &u32| self.visit::<2, 0, 1>(&mut slab, *brick as usize, side);
+                match side {
+                    Side::High => bricks.iter().for_each(visit),
+                    Side::Low => {
+                        let planes: Vec<_> = self.groups(bricks, plane).collect();
+                        planes.into_iter().rev().flatten().for_each(visit);
+                    }
                 }
-                let range = *begin..begin + cells.len();
-                self.sweep::<A, B, C>(Slab { first: *begin, cells, changed, below }, part(bricks, range), side)
+                slab.below
             })
             .collect();
 
         // What slabs took from the plane below them.
-        if A == 2 && side == Side::High {
-            for below in taken {
-                for (at, (taken, marks)) in below.cells.iter().zip(&below.changed).enumerate() {
-                    if *marks != 0 {
-                        cells[below.first + at].iter_mut().zip(taken).for_each(|(cells, taken)| *cells &= taken);
-                        changed[below.first + at] |= marks;
-                    }
-                }
+        for below in taken {
+            for (at, (left, marks)) in
+                below.cells.iter().zip(&below.changed).enumerate().filter(|(_, (_, marks))| **marks != 0)
+            {
+                cells[below.first + at].iter_mut().zip(left).for_each(|(cells, left)| *cells &= left);
+                changed[below.first + at] |= marks;
             }
         }
-    }
-
-    /// Visits the bricks of a slab in the order the direction asks for; gives back what lies below.
-    fn sweep<const A: usize, const B: usize, const C: usize>(
-        &self,
-        mut slab: Slab,
-        bricks: &[u32],
-        side: Side,
-    ) -> Below {
-        let [_, row, plane] = self.layout.stride;
-        let mut visit = |brick: &u32| self.visit::<A, B, C>(&mut slab, *brick as usize, side);
-        match (side, A) {
-            (Side::High, _) => bricks.iter().for_each(visit),
-            (Side::Low, 0) => self.groups(bricks, row).for_each(|row| row.iter().rev().for_each(&mut visit)),
-            (Side::Low, 1) => self.groups(bricks, plane).for_each(|plane| {
-                let rows: Vec<_> = self.groups(plane, row).collect();
-                rows.into_iter().rev().for_each(|row| row.iter().for_each(&mut visit));
-            }),
-            (Side::Low, _) => {
-                let planes: Vec<_> = self.groups(bricks, plane).collect();
-                planes.into_iter().rev().for_each(|plane| plane.iter().for_each(&mut visit));
-            }
-        }
-        slab.below
     }
 
     /// Cuts a list of bricks where rows, or planes, of that many bricks end.
