@@ -21,7 +21,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 /// A region reaches over sections down to this share of its widest. Higher cuts more, and merging has more to mend.
-pub const GROWS_AT: f32 = 0.6;
+pub const GROWS_AT: f32 = 0.8;
 
 /// From this share of a room's own section on, an opening is a missing wall, not a neck. A square corridor must be four
 /// widths long to be a room of its own.
@@ -202,23 +202,32 @@ fn merge(widths: &Widths, at: &[f32], region_of: &[u32]) -> Vec<u32> {
             continue;
         }
         into[b as usize] = a;
-        let gone = std::mem::take(&mut regions[b as usize]);
+        let mut gone = std::mem::take(&mut regions[b as usize]);
         regions[b as usize].age = u32::MAX;
-        for (&beside, openings) in gone.openings.iter().filter(|(beside, _)| **beside != a) {
-            regions[beside as usize].openings.remove(&b);
-            for opening in openings {
-                add(regions[a as usize].openings.entry(beside).or_default(), *opening);
-                add(regions[beside as usize].openings.entry(a).or_default(), *opening);
-            }
-        }
+        gone.openings.remove(&a);
         let whole = &mut regions[a as usize];
-        whole.openings.remove(&b);
+        let within_m2 = whole.openings.remove(&b).iter().flatten().map(|opening| opening.area_m2).sum();
+        // Behind the smaller one, nothing is wider open to the larger than the two are to each other.
+        let smaller = if whole.volume_m3 < gone.volume_m3 { &mut *whole } else { &mut gone };
+        for opening in smaller.openings.values_mut().flatten() {
+            opening.area_m2 = opening.area_m2.min(within_m2);
+        }
         whole.volume_m3 += gone.volume_m3;
         whole.length_m += gone.length_m;
         whole.radius_m = whole.radius_m.max(gone.radius_m);
         whole.log_sections += gone.log_sections;
         whole.age += 1;
-        let besides: Vec<u32> = whole.openings.keys().copied().collect();
+        for (&beside, openings) in &gone.openings {
+            regions[beside as usize].openings.remove(&b);
+            for opening in openings {
+                add(regions[a as usize].openings.entry(beside).or_default(), *opening);
+            }
+        }
+        let openings = regions[a as usize].openings.clone();
+        let besides: Vec<u32> = openings.keys().copied().collect();
+        for (beside, openings) in openings {
+            regions[beside as usize].openings.insert(a, openings);
+        }
         for beside in besides {
             offer(&mut pairs, &regions, a, beside);
         }
