@@ -6,10 +6,12 @@
 //!
 //! 1. Grow: from the widest section left, a region takes all it reaches over sections not below [`GROWS_AT`] of it. Rooms,
 //!    passages and doorways become regions of their own, and so does much that is noise.
-//! 2. Merge, worst first, two regions whose opening `A` is no neck: it is too large against one of them ([`OPEN_AT`], `A`
-//!    over `sqrt(2 R V)`, the section of a block of that volume `V` and inner radius `R`), or not much narrower than both
-//!    ([`STEP_AT`], `A` over the larger mean section). All openings between two regions count together, so pillars part
-//!    no hall; niches, doorways and noise are small and go to a neighbour; corners of a corridor are not narrower.
+//! 2. Merge, worst first, two regions whose opening `A` is no neck: it is too large against one of them ([`OPEN_AT`]), or
+//!    hardly narrower than both ([`STEP_AT`], `A` over the larger mean section, which bends and beams fail). A region's
+//!    size against an opening is the larger of two sections: that of a block of its volume `V` and inner radius `R`,
+//!    `sqrt(2 R V)`, which lets a long passage be a room; and its mean section, but no more than its volume over its
+//!    length, which lets a closet be one behind its door. All openings between two regions count together, so pillars
+//!    part no hall; niches, doorways and noise are small and go to a neighbour.
 //! 3. Flood: what is about as wide as its room is the room's core; from the cores the rest is taken, widest first, so that
 //!    two rooms meet at the narrowest section between them.
 
@@ -19,10 +21,11 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 /// A region reaches over sections down to this share of its widest. Higher cuts more, and merging has more to mend.
-pub const GROWS_AT: f32 = 0.6;
+pub const GROWS_AT: f32 = 0.8;
 
-/// From this share of a room's own section on, an opening is a missing wall, not a neck.
-pub const OPEN_AT: f32 = 0.65;
+/// From this share of a room's own section on, an opening is a missing wall, not a neck. A square corridor must be four
+/// widths long to be a room of its own.
+pub const OPEN_AT: f32 = 0.5;
 
 /// From this share of the wider side's mean section on, an opening is not narrower than what it joins: a bend, a beam.
 pub const STEP_AT: f32 = 0.7;
@@ -44,6 +47,8 @@ pub struct Widths<'a> {
     pub volumes_m3: &'a [f32],
     /// The distance to matter at each node, metres.
     pub radii_m: &'a [f32],
+    /// The length of an edge, metres.
+    pub step_m: f32,
 }
 
 /// The cell of each node, numbered from 0 in the order of their lowest nodes.
@@ -101,6 +106,8 @@ struct Opening {
 struct Region {
     volume_m3: f32,
     radius_m: f32,
+    /// Steps of the curve in it, metres.
+    length_m: f32,
     /// Sum of volume times the logarithm of the section there.
     log_sections: f32,
     openings: BTreeMap<u32, Vec<Opening>>,
@@ -114,16 +121,18 @@ impl Region {
         (self.log_sections / self.volume_m3).exp()
     }
 
-    /// The section of a block of its volume and radius, m2.
-    fn block_m2(&self) -> f32 {
-        (2.0 * self.radius_m * self.volume_m3).sqrt()
+    /// What an opening is held against, m2: the section of a block of its volume and radius, or its own section as far as
+    /// its volume bears it (a bay between pillars sees through the whole hall).
+    fn size_m2(&self) -> f32 {
+        let block_m2 = (2.0 * self.radius_m * self.volume_m3).sqrt();
+        block_m2.max(self.section_m2().min(self.volume_m3 / self.length_m))
     }
 }
 
 /// How little of a neck the opening between two regions is: from 1 on it is none.
 fn openness(a: &Region, b: &Region, openings: &[Opening]) -> f32 {
     let area_m2: f32 = openings.iter().map(|opening| opening.area_m2).sum();
-    let open = area_m2 / (OPEN_AT * a.block_m2().min(b.block_m2()));
+    let open = area_m2 / (OPEN_AT * a.size_m2().min(b.size_m2()));
     let step = area_m2 / (STEP_AT * a.section_m2().max(b.section_m2()));
     open.max(step)
 }
@@ -159,6 +168,7 @@ fn merge(widths: &Widths, at: &[f32], region_of: &[u32]) -> Vec<u32> {
         // A node without a voxel of its own must not leave its region without a volume.
         let volume_m3 = widths.volumes_m3[node].max(1e-9);
         region.volume_m3 += volume_m3;
+        region.length_m += widths.step_m;
         region.radius_m = region.radius_m.max(widths.radii_m[node]);
         region.log_sections += volume_m3 * at[node].max(1e-9).ln();
     }
@@ -192,22 +202,32 @@ fn merge(widths: &Widths, at: &[f32], region_of: &[u32]) -> Vec<u32> {
             continue;
         }
         into[b as usize] = a;
-        let gone = std::mem::take(&mut regions[b as usize]);
+        let mut gone = std::mem::take(&mut regions[b as usize]);
         regions[b as usize].age = u32::MAX;
-        for (&beside, openings) in gone.openings.iter().filter(|(beside, _)| **beside != a) {
-            regions[beside as usize].openings.remove(&b);
-            for opening in openings {
-                add(regions[a as usize].openings.entry(beside).or_default(), *opening);
-                add(regions[beside as usize].openings.entry(a).or_default(), *opening);
-            }
-        }
+        gone.openings.remove(&a);
         let whole = &mut regions[a as usize];
-        whole.openings.remove(&b);
+        let within_m2 = whole.openings.remove(&b).iter().flatten().map(|opening| opening.area_m2).sum();
+        // Behind the smaller one, nothing is wider open to the larger than the two are to each other.
+        let smaller = if whole.volume_m3 < gone.volume_m3 { &mut *whole } else { &mut gone };
+        for opening in smaller.openings.values_mut().flatten() {
+            opening.area_m2 = opening.area_m2.min(within_m2);
+        }
         whole.volume_m3 += gone.volume_m3;
+        whole.length_m += gone.length_m;
         whole.radius_m = whole.radius_m.max(gone.radius_m);
         whole.log_sections += gone.log_sections;
         whole.age += 1;
-        let besides: Vec<u32> = whole.openings.keys().copied().collect();
+        for (&beside, openings) in &gone.openings {
+            regions[beside as usize].openings.remove(&b);
+            for opening in openings {
+                add(regions[a as usize].openings.entry(beside).or_default(), *opening);
+            }
+        }
+        let openings = regions[a as usize].openings.clone();
+        let besides: Vec<u32> = openings.keys().copied().collect();
+        for (beside, openings) in openings {
+            regions[beside as usize].openings.insert(a, openings);
+        }
         for beside in besides {
             offer(&mut pairs, &regions, a, beside);
         }

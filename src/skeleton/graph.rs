@@ -166,6 +166,7 @@ impl Skeleton {
             middles_m: &middles_m,
             volumes_m3: &volumes_m3,
             radii_m: &radii_m,
+            step_m: lattice.voxel_m,
         };
         let cell_of = cells::cells(&widths);
         let (necks, neck_of) = necks::necks(&matter, &widths, &directions, &cell_of);
