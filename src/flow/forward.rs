@@ -51,8 +51,8 @@ fn shares(skeleton: &Skeleton, tree: &PathTree) -> Vec<f64> {
         share[node.index()] = if parent == node {
             1.0
         } else {
-            let [radius_m, parent_radius_m] = [node, parent].map(|at| f64::from(skeleton.graph[at].radius_m));
-            share[parent.index()] * (radius_m / parent_radius_m).powi(2).min(1.0)
+            let [ball, parent_ball] = [node, parent].map(|at| f64::from(skeleton.graph[at].opening_voxels));
+            share[parent.index()] * (ball / parent_ball).powi(2).min(1.0)
         };
     }
     share
