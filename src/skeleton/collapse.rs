@@ -37,7 +37,7 @@ const GRAIN: usize = 512;
 /// Thins a complex until no free pair is left that may go: no faces, and of its edges and points those that loops, long
 /// branches and `anchors` need. `distance` and `opening` are those of the void.
 ///
-/// Cost: for each layer seven visits to each brick whose surroundings changed; 19 words a brick beside the complex.
+/// Cost: for each layer seven visits to each brick whose surroundings changed; 16 words a brick beside the complex.
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised; the complex is then in between.
