@@ -8,11 +8,11 @@
 //! Surfaces all go; curves that mean something stay. An edge is born in the layer that takes its last face. There the void
 //! was `d` wide around it (its distance) and as wide as `w` beside it (its opening): the ball of `w` goes on for `w - d`
 //! layers. An edge that outlives its birth `t` by that much and `t` more belongs to a branch longer than the void is
-//! wide and is kept for good (Chaussard, Noël, Biri & Couprie, DGCI 2013, with [`LEAST_LIFE`] added).
+//! wide and is kept for good (Chaussard, Noël, Biri & Couprie, DGCI 2013, with `LEAST_LIFE` added).
 //!
 //! Work goes with the bricks that change: a brick whose surroundings did not change in one layer changes in none until
 //! they do. The passes of a direction are done together, brick by brick, in the order in which that comes to the same as
-//! one pass after another: away from the side that pairs are taken from, upwards along the other two axes (see [`peel`]).
+//! one pass after another: away from the side that pairs are taken from, upwards along the other two axes (see `peel`).
 //! Threads take slabs of bricks each; where two slabs meet, the upper one works out for itself what the lower one will
 //! leave. So the result does not depend on threads.
 
@@ -37,7 +37,7 @@ const GRAIN: usize = 512;
 /// Thins a complex until no free pair is left that may go: no faces, and of its edges and points those that loops, long
 /// branches and `anchors` need. `distance` and `opening` are those of the void.
 ///
-/// Cost: for each layer seven visits to each brick whose surroundings changed; 19 words a brick beside the complex.
+/// Cost: for each layer seven visits to each brick whose surroundings changed; 16 words a brick beside the complex.
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised; the complex is then in between.

@@ -37,7 +37,7 @@ use curve::Curve;
 /// threads.
 ///
 /// Stages reported: `distance`, `opening`, `complex`, `ties`, `anchors`, `collapse` (a unit a layer), `prune`.
-/// Memory: about 4 bytes a voxel. Time: about 10 ns a voxel on two threads.
+/// Memory: about 4 bytes a voxel. Time: about 10 ns a voxel on one thread where half of the grid is void.
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised.

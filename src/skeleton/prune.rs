@@ -12,12 +12,13 @@ use glam::{IVec3, Vec3};
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
-/// Cuts branches that stay inside the ball of the junction they leave. Anchors stay, and branches end at them.
+/// Cuts branches that stay inside the ball of the junction they leave. Branches end at anchors, and anchors stay unless
+/// they lie in a larger ball themselves.
 pub fn prune(curve: &mut Curve) {
     let mut near = curve.neighbours();
     let mut stays = vec![true; curve.vertices.len()];
     let tips = |near: &[Vec<u32>]| -> Vec<u32> {
-        let is_tip = |vertex: &u32| near[*vertex as usize].len() == 1 && !curve.vertices[*vertex as usize].anchor;
+        let is_tip = |vertex: &u32| near[*vertex as usize].len() == 1;
         (0..near.len() as u32).filter(is_tip).collect()
     };
 
@@ -106,10 +107,13 @@ fn is_end(curve: &Curve, near: &[Vec<u32>], vertex: u32) -> bool {
     near[vertex as usize].len() < 3 && !curve.vertices[vertex as usize].anchor
 }
 
+/// Whether the ball at a tip says nothing beside that at a junction: they overlap or, where an anchor is the tip, it lies
+/// in the junction's ball and has no larger one, so that it is a dent in the wall of the same room.
 fn overlaps(curve: &Curve, tip: u32, junction: u32) -> bool {
     let (tip, junction) = (&curve.vertices[tip as usize], &curve.vertices[junction as usize]);
     let apart = (tip.corner - junction.corner).abs().max_element();
-    apart <= i32::from(tip.distance) + i32::from(junction.distance)
+    let (at_tip, at_junction) = (i32::from(tip.distance), i32::from(junction.distance));
+    if tip.anchor { apart <= at_junction && at_tip <= at_junction } else { apart <= at_tip + at_junction }
 }
 
 /// Whether a dead end may grow from one lattice point to the next: through void, and where that is wide enough.

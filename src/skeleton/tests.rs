@@ -2,6 +2,8 @@ use super::*;
 use crate::job::Quiet;
 use crate::space::VoxelIndex;
 use crate::voxel::bits::BitGrid;
+use crate::voxel::groups;
+use crate::voxel::morphology::Neighbours;
 use glam::IVec3;
 use topology::{Topology, of_complex, of_curve, of_void};
 
@@ -239,4 +241,32 @@ fn a_raised_flag_stops_it() {
     let cancel = Cancel::new();
     cancel.cancel();
     assert_eq!(thin(&boxes([9; 3], &[([0; 3], [9; 3])]), &Quiet, &cancel), Err(Cancelled));
+}
+
+#[test]
+fn noise_on_walls_makes_few_branches() {
+    let mut void = boxes([142, 24, 24], &[([1, 4, 4], [141, 20, 20])]);
+    let mut random = Random(5);
+    let mut whole = BitGrid::new(void.size());
+    whole.fill(true);
+    // Bumps and dents of a voxel all over the walls.
+    for voxel in whole.iter().filter(|_| random.next() < 0.15) {
+        let at = voxel.0;
+        let depth = [at.y - 4, 19 - at.y, at.z - 4, 19 - at.z].into_iter().min().unwrap_or(0);
+        if (-1..=0).contains(&depth) && (1..141).contains(&at.x) {
+            void.set(voxel, depth < 0);
+        }
+    }
+    // The corridor without the bubbles in its walls.
+    let seed = void.place(VoxelIndex::new(70, 12, 12)).map(|(brick, bit)| (brick, 1 << bit));
+    let corridor = groups::take(&mut void, seed, Neighbours::All);
+    void.fill(false);
+    corridor.iter().for_each(|(brick, bits)| void.words_mut()[*brick as usize] = *bits);
+    check(&void, "noisy corridor");
+    let tips = |curve: &Curve| curve.neighbours().iter().filter(|near| near.len() == 1).count();
+    let (complex, ..) = collapsed(&void);
+    let board = Chessboard::new(&void, &Cancel::new()).unwrap();
+    let before = Curve::new(&complex, &[], board.distance.clone(), board.distance);
+    let after = thinned(&void);
+    assert!(tips(&after) <= 4 && tips(&before) > tips(&after), "{} tips, {} before", tips(&after), tips(&before));
 }

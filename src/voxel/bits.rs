@@ -1,6 +1,6 @@
 //! Which voxels belong to a set, at one bit each?
 //!
-//! A [`BitGrid`] keeps 64 voxels, a [brick](super::brick) of 4 x 4 x 4, in a word, so that neighbours in all three
+//! A [`BitGrid`] keeps 64 voxels, a brick of 4 x 4 x 4, in a word, so that neighbours in all three
 //! directions share a cache line and most work is done on 64 voxels at a time. Bricks are ordered x fastest, then y, then
 //! z. Invariant: bits beyond the size are zero. Whatever lies outside the grid is not in the set.
 

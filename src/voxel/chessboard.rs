@@ -151,15 +151,6 @@ fn is_empty(row: &[u64]) -> bool {
     row.iter().fold(0, |any, word| any | word) == 0
 }
 
-/// The voxels of some bricks as a set on a grid.
-pub fn as_set(like: &BitGrid, bricks: &[(u32, u64)]) -> BitGrid {
-    let mut set = BitGrid::new(like.size());
-    for (brick, bits) in bricks {
-        set.words_mut()[*brick as usize] |= bits;
-    }
-    set
-}
-
 /// Bricks along an axis that a ball of that distance can reach beyond its centre's brick.
 pub(super) fn reach_in_bricks(distance: u16) -> usize {
     usize::from(distance.saturating_sub(1)).div_ceil(EDGE)
@@ -171,6 +162,15 @@ mod tests {
     use crate::space::VoxelIndex;
     use glam::IVec3;
     use proptest::prelude::*;
+
+    /// The voxels of some bricks as a set on a grid.
+    fn as_set(like: &BitGrid, bricks: &[(u32, u64)]) -> BitGrid {
+        let mut set = BitGrid::new(like.size());
+        for (brick, bits) in bricks {
+            set.words_mut()[*brick as usize] |= bits;
+        }
+        set
+    }
 
     fn in_ball(radius: i32) -> impl Iterator<Item = IVec3> {
         let edge = 2 * radius - 1;
