@@ -1,23 +1,22 @@
 //! Which node of the skeleton is nearest to a voxel, along the void and not through walls?
 //!
 //! A multi-source search over the void's voxels in the chamfer metric 3-4-5 (Borgefors 1986: steps over faces, edges and
-//! corners, at most 12% off the straight distance), with Dial's bucket queue: weights are small, so six buckets in a ring
-//! do. Each voxel takes the node of its shortest way, of equally short ways the one to the lower node; the result is
-//! therefore the same however the search is ordered. Labels are kept for bricks with void in them alone.
+//! corners, at most 12% off the straight distance). The voxels at each length make a front, kept as bits. A front marks
+//! its neighbours three, four and five lengths further on, many at once; a marked voxel that no earlier front held belongs
+//! to the front of that length, and takes the lowest node among the neighbours it was reached from. So each voxel has the
+//! node of its shortest way, of equally short ways the one to the lower node, however the search is ordered. Labels are
+//! kept for bricks with void in them alone.
 
 use crate::space::VoxelIndex;
 use crate::voxel::bits::BitGrid;
 use crate::voxel::brick;
 use glam::IVec3;
 
-/// The length of a step over a face; a straight voxel is this many units.
-pub const STEP_UNITS: u16 = 3;
+/// The length of a step over a face; over an edge and a corner it is one and two more.
+const STEP_UNITS: usize = 3;
 
-/// Neighbours of a voxel, those over faces first, then edges, then corners.
-const NEIGHBOURS: usize = 26;
-
-/// Buckets of the queue: one more than the longest step.
-const BUCKETS: usize = 6;
+/// Fronts that are kept: one more than the longest step.
+const FRONTS: usize = 6;
 
 /// No brick there, or one without void.
 const NO_SLOT: u32 = u32::MAX;
@@ -36,57 +35,31 @@ pub struct Nearest {
 impl Nearest {
     /// Finds the nearest node for each voxel of `void`. `corners` are the nodes, in the order of their numbers, at corners
     /// of voxels (corner `(i, j, k)` is the lowest corner of that voxel); each stands in the void voxels around it.
-    /// Voxels whose void has no node get none, as do those more than 20,000 voxels away from one.
+    /// Voxels whose void has no node get none.
     ///
-    /// One thread, about 40 ms a million voxels.
+    /// One thread, about 60 ns a voxel. Memory for the time: 212 bytes a brick with void.
     pub fn new(void: &BitGrid, corners: &[IVec3]) -> Self {
         let slots = Slots::new(void);
-        let mut distance: Vec<[u16; 64]> = slots.words.iter().map(|word| open(*word)).collect();
         let mut labels = vec![[NO_NODE; 64]; slots.words.len()];
-        let mut buckets: [Vec<u32>; BUCKETS] = Default::default();
-
+        let mut fronts = Fronts::new(&slots);
         for (node, corner) in corners.iter().enumerate() {
             for octant in 0..8 {
                 let below = IVec3::new(octant & 1, octant >> 1 & 1, octant >> 2);
                 let Some((brick, bit)) = void.place(VoxelIndex(*corner - below)) else { continue };
-                let slot = slots.of_brick[brick] as usize;
-                if void.words()[brick] >> bit & 1 == 1 && labels[slot][bit as usize] == NO_NODE {
-                    distance[slot][bit as usize] = 0;
-                    labels[slot][bit as usize] = node as u32;
-                    buckets[0].push(slot as u32 * 64 + bit);
+                if void.words()[brick] >> bit & 1 == 1 {
+                    let slot = slots.of_brick[brick];
+                    let label = &mut labels[slot as usize][bit as usize];
+                    *label = (node as u32).min(*label);
+                    fronts.mark(slot, 0, 1 << bit);
                 }
             }
         }
-
-        let mut reached: u16 = 0;
-        let mut waiting: usize = buckets[0].len();
-        while waiting > 0 && reached < u16::MAX - BUCKETS as u16 {
-            let mut bucket = std::mem::take(&mut buckets[reached as usize % BUCKETS]);
-            waiting -= bucket.len();
-            for voxel in bucket.drain(..) {
-                let (slot, bit) = (voxel as usize / 64, voxel as usize % 64);
-                if distance[slot][bit] != reached {
-                    continue;
-                }
-                let label = labels[slot][bit];
-                let beside = &slots.beside[slot];
-                for (step, &(side, there)) in STEPS[bit].iter().enumerate() {
-                    let slot = beside[side as usize] as usize;
-                    let Some(far) = distance.get_mut(slot) else { continue };
-                    let there = there as usize;
-                    let length = reached + WEIGHTS[step];
-                    if length < far[there] {
-                        far[there] = length;
-                        labels[slot][there] = label;
-                        buckets[length as usize % BUCKETS].push((slot * 64 + there) as u32);
-                        waiting += 1;
-                    } else if length == far[there] && label < labels[slot][there] {
-                        labels[slot][there] = label;
-                    }
-                }
+        for length in 0.. {
+            if fronts.waiting == 0 {
+                break;
             }
-            buckets[reached as usize % BUCKETS] = bucket;
-            reached += 1;
+            fronts.settle(&slots, length, &mut labels);
+            fronts.spread(&slots, length);
         }
         Self { bricks: void.bricks(), slot_of_brick: slots.of_brick, labels }
     }
@@ -145,43 +118,140 @@ impl Slots {
     }
 }
 
-/// Distances before the search: none for void voxels, 0 for all others, so that no way leads there.
-fn open(word: u64) -> [u16; 64] {
-    std::array::from_fn(|bit| if word >> bit & 1 == 1 { u16::MAX } else { 0 })
+/// The voxels at the last and the next few lengths; those of length `l` at `l % FRONTS`.
+struct Fronts {
+    /// The void not reached yet.
+    open: Vec<u64>,
+    /// Voxels at each of the last lengths.
+    held: Vec<[u64; FRONTS]>,
+    /// Voxels that can be reached with each of the next lengths.
+    marked: Vec<[u64; FRONTS]>,
+    /// Slots that hold voxels, and slots with marks.
+    holding: [Vec<u32>; FRONTS],
+    marking: [Vec<u32>; FRONTS],
+    /// Slots with marks, of all lengths together.
+    waiting: usize,
 }
 
-/// The lengths of the 26 steps.
-const WEIGHTS: [u16; NEIGHBOURS] = steps().1;
+impl Fronts {
+    fn new(slots: &Slots) -> Self {
+        let none = vec![[0; FRONTS]; slots.words.len()];
+        Self {
+            open: slots.words.clone(),
+            held: none.clone(),
+            marked: none,
+            holding: Default::default(),
+            marking: Default::default(),
+            waiting: 0,
+        }
+    }
 
-/// For each bit of a brick and each step: which of the 27 bricks around it leads to, and the bit there.
-const STEPS: [[(u8, u8); NEIGHBOURS]; 64] = steps().0;
+    #[inline(always)]
+    fn mark(&mut self, slot: u32, front: usize, bits: u64) {
+        let marked = &mut self.marked[slot as usize][front];
+        if *marked == 0 && bits != 0 {
+            self.marking[front].push(slot);
+            self.waiting += 1;
+        }
+        *marked |= bits;
+    }
 
-const fn steps() -> ([[(u8, u8); NEIGHBOURS]; 64], [u16; NEIGHBOURS]) {
-    let mut steps = [[(0, 0); NEIGHBOURS]; 64];
-    let mut weights = [0; NEIGHBOURS];
+    /// Makes the front of a length out of its marks, and gives each of its voxels the lowest node it was reached from.
+    fn settle(&mut self, slots: &Slots, length: usize, labels: &mut [[u32; 64]]) {
+        let front = length % FRONTS;
+        let before = [0, 1, 2].map(|longer| (length + FRONTS - STEP_UNITS - longer) % FRONTS);
+        for slot in self.holding[front].drain(..) {
+            self.held[slot as usize][front] = 0;
+        }
+        self.waiting -= self.marking[front].len();
+        for slot in self.marking[front].drain(..) {
+            let here = slot as usize;
+            let new = std::mem::take(&mut self.marked[here][front]) & self.open[here];
+            if new == 0 {
+                continue;
+            }
+            self.open[here] &= !new;
+            self.held[here][front] = new;
+            self.holding[front].push(slot);
+            for bit in brick::ones(new).map(|bit| bit as usize) {
+                let mut lowest = labels[here][bit];
+                for (side, moved) in around(bit) {
+                    let beside = slots.beside[here][*side as usize] as usize;
+                    let Some(held) = self.held.get(beside) else { continue };
+                    for (before, moved) in before.iter().zip(moved) {
+                        for other in brick::ones(held[*before] & moved) {
+                            lowest = lowest.min(labels[beside][other as usize]);
+                        }
+                    }
+                }
+                labels[here][bit] = lowest;
+            }
+        }
+    }
+
+    /// Marks what the front of a length reaches.
+    fn spread(&mut self, slots: &Slots, length: usize) {
+        let after = [0, 1, 2].map(|longer| (length + STEP_UNITS + longer) % FRONTS);
+        let holding = std::mem::take(&mut self.holding[length % FRONTS]);
+        for &slot in &holding {
+            let beside = &slots.beside[slot as usize];
+            for bit in brick::ones(self.held[slot as usize][length % FRONTS]) {
+                for (side, moved) in around(bit as usize) {
+                    let there = beside[*side as usize];
+                    let open = self.open.get(there as usize).copied().unwrap_or(0);
+                    if open == 0 {
+                        continue;
+                    }
+                    for (after, moved) in after.iter().zip(moved) {
+                        self.mark(there, *after, open & moved);
+                    }
+                }
+            }
+        }
+        self.holding[length % FRONTS] = holding;
+    }
+}
+
+/// For each bit of a brick: which of the 27 bricks around hold neighbours of it, and which bits of them are one step over
+/// a face, an edge, a corner away.
+#[inline(always)]
+fn around(bit: usize) -> &'static [(u8, [u64; 3])] {
+    let (bricks, count) = &AROUND[bit % 64];
+    &bricks[..*count]
+}
+
+type Bricks = ([(u8, [u64; 3]); 8], usize);
+
+static AROUND: [Bricks; 64] = all_around();
+
+const fn all_around() -> [Bricks; 64] {
+    let mut around = [([(0, [0; 3]); 8], 0); 64];
     let mut bit = 0;
     while bit < 64 {
-        let mut step = 0;
-        let mut moved = 1;
-        while moved <= 3 {
-            let mut side = 0;
-            while side < 27 {
-                let [dx, dy, dz] = [side % 3, side / 3 % 3, side / 9];
-                if (dx != 1) as usize + (dy != 1) as usize + (dz != 1) as usize == moved {
-                    // One brick further along each axis, so that nothing is negative.
-                    let [x, y, z] = [bit % 4 + dx + 3, bit / 4 % 4 + dy + 3, bit / 16 + dz + 3];
-                    let brick = x / 4 + 3 * (y / 4) + 9 * (z / 4);
-                    steps[bit][step] = (brick as u8, (x % 4 + 4 * (y % 4) + 16 * (z % 4)) as u8);
-                    weights[step] = STEP_UNITS + moved as u16 - 1;
-                    step += 1;
-                }
-                side += 1;
+        let mut bricks = [[0_u64; 3]; 27];
+        let mut side = 0;
+        while side < 27 {
+            let [dx, dy, dz] = [side % 3, side / 3 % 3, side / 9];
+            let moved = (dx != 1) as usize + (dy != 1) as usize + (dz != 1) as usize;
+            if moved > 0 {
+                // One brick further along each axis, so that nothing is negative.
+                let [x, y, z] = [bit % 4 + dx + 3, bit / 4 % 4 + dy + 3, bit / 16 + dz + 3];
+                bricks[x / 4 + 3 * (y / 4) + 9 * (z / 4)][moved - 1] |= 1 << (x % 4 + 4 * (y % 4) + 16 * (z % 4));
             }
-            moved += 1;
+            side += 1;
         }
+        let (mut next, mut brick) = (0, 0);
+        while brick < 27 {
+            if bricks[brick][0] | bricks[brick][1] | bricks[brick][2] != 0 {
+                around[bit].0[next] = (brick as u8, bricks[brick]);
+                next += 1;
+            }
+            brick += 1;
+        }
+        around[bit].1 = next;
         bit += 1;
     }
-    (steps, weights)
+    around
 }
 
 #[cfg(test)]

@@ -187,3 +187,15 @@ fn turning_keeps_components_loops_and_necks() {
     let (one, other) = (check(&void, 3, 2), check(&turned(&void), 3, 2));
     assert_eq!(one.shape(), other.shape());
 }
+
+#[test]
+fn threads_do_not_matter() {
+    let blocks = [([3, 3, 3], [40, 50, 27]), ([43, 3, 3], [83, 30, 27]), ([40, 10, 3], [43, 19, 22])];
+    let void = carved([86, 54, 30], &blocks, &[]);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let skeleton = pool.install(|| skeleton(&void));
+        format!("{:?}", skeleton)
+    };
+    assert!(with(1) == with(3));
+}
