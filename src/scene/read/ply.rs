@@ -167,7 +167,11 @@ fn read_property(body: &mut Body, property: &Property, corners: &mut Vec<u32>, c
         return Err(Kind::Outside { what: "length of a list".into(), value: length, bound: "whole numbers from 0" });
     }
     let length = length as u64;
-    body.require(length.saturating_mul(if body.encoding == Encoding::Text { 1 } else { property.item.bytes() as u64 }))?;
+    body.require(length.saturating_mul(if body.encoding == Encoding::Text {
+        1
+    } else {
+        property.item.bytes() as u64
+    }))?;
     for _ in 0..length {
         let value = body.value(property.item)?;
         if property.role == Role::Corners {
