@@ -195,13 +195,13 @@ fn median(times: &[f64]) -> f64 {
 /// Keeps the time of every stage.
 #[derive(Default)]
 struct Stages {
-    running: Mutex<Option<(&'static str, Instant)>>,
-    times: Mutex<BTreeMap<&'static str, Vec<f64>>>,
+    running: Mutex<Option<(String, Instant)>>,
+    times: Mutex<BTreeMap<String, Vec<f64>>>,
 }
 
 impl Progress for Stages {
-    fn begin(&self, stage: &'static str, _total: u64) {
-        *self.running.lock().unwrap() = Some((stage, Instant::now()));
+    fn begin(&self, stage: &str, _total: u64) {
+        *self.running.lock().unwrap() = Some((stage.to_owned(), Instant::now()));
     }
 
     fn advance(&self, _units: u64) {}

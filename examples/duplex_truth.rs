@@ -30,7 +30,7 @@ const AT_DOOR_M: f64 = 0.3;
 struct Clock(Mutex<Vec<(&'static str, Instant)>>);
 
 impl Progress for Clock {
-    fn begin(&self, stage: &'static str, _total: u64) {
+    fn begin(&self, stage: &str, _total: u64) {
         if let Ok(mut stages) = self.0.lock() {
             stages.push((stage, Instant::now()));
         }

@@ -247,12 +247,13 @@ pub fn error_table(entries: &[Entry], seconds: impl Fn(&Entry) -> f64) -> Table 
         "max factor",
         "median angle",
         "not below",
+        "lost",
         "sensors",
         "left out",
         "seconds",
     ]);
     for entry in entries {
-        let Errors { rms_factor, max_factor, median_angle_deg, counted, left_out, above, .. } = entry.errors;
+        let Errors { rms_factor, max_factor, median_angle_deg, counted, left_out, lost, above } = entry.errors;
         let factor = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
         table.row(vec![
             entry.name.clone(),
@@ -260,6 +261,7 @@ pub fn error_table(entries: &[Entry], seconds: impl Fn(&Entry) -> f64) -> Table 
             factor(max_factor),
             median_angle_deg.map_or_else(|| "-".to_owned(), |angle| format!("{angle:.0} deg")),
             format!("{above} of {counted}"),
+            lost.to_string(),
             counted.to_string(),
             left_out.to_string(),
             format!("{:.4}", seconds(entry)),

@@ -58,7 +58,7 @@ impl Node {
 /// A step of the skeleton.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
-    /// Its length, metres.
+    /// Its length along the smoothed curve, metres: a staircase of steps along axes is as long as the slope it stands for.
     pub length_m: f32,
     /// True area of the void across its middle, square to the curve there, as far as it is in sight, m2.
     pub section_m2: f32,
@@ -105,6 +105,9 @@ const SMOOTH_STEPS: u16 = 6;
 
 /// The least, which takes the stairs out of a slanted curve.
 const LEAST_SMOOTH_STEPS: u16 = 2;
+
+/// The least share of a step along an axis that counts as length: its share on the diagonal of a cube.
+const SHORTEST_STEP: f32 = 0.577_350_3;
 
 impl Skeleton {
     /// Thins the void of a scene and cuts its skeleton into cells: [`Skeleton::build_from`].
@@ -185,7 +188,12 @@ impl Skeleton {
             });
         }
         for (edge, [a, b]) in curve.edges.iter().enumerate() {
-            let weight = Edge { length_m: lattice.voxel_m, section_m2: sections_m2[edge], neck: neck_of[edge] };
+            let step = (corners[*b as usize] - corners[*a as usize]).as_vec3();
+            let weight = Edge {
+                length_m: lattice.voxel_m * step.dot(directions[edge]).abs().max(SHORTEST_STEP),
+                section_m2: sections_m2[edge],
+                neck: neck_of[edge],
+            };
             graph.add_edge(NodeIndex::new(*a as usize), NodeIndex::new(*b as usize), weight);
         }
         Ok(Self { graph, cells, necks, lattice, nearest })
