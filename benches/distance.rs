@@ -7,6 +7,7 @@
 //! C++ inside) is then timed on the same files with as many threads, where `python3` has it (`pip install edt`), and its
 //! distances are compared with ours voxel by voxel.
 
+#[allow(dead_code, reason = "each bench uses what it needs")]
 mod rooms;
 
 use lightvein::voxel::bits::BitGrid;
@@ -23,7 +24,7 @@ fn main() {
     let folder = std::env::temp_dir().join(format!("lightvein-distance-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
 
-    for (name, (size, void)) in [("rooms", rooms::array_of_rooms([8, 8, 7])), ("hall", hall([197, 197, 173]))] {
+    for (name, (size, void)) in [("rooms", rooms::array_of_rooms([8, 8, 7], 24, 5)), ("hall", hall([197, 197, 173]))] {
         println!("{name}: {size:?}, {:.2} M voxels", void.len() as f64 / 1e6);
         let solid: Vec<u8> = void.iter().map(|&void| 1 - void).collect();
         let mut seconds = Vec::new();

@@ -8,12 +8,15 @@
 //! With `--write` no time is taken: small voids and their skeletons, drawn twice as large, are written as `.npy` files, for
 //! `peers/topology_gudhi.py`.
 
+mod rooms;
+
 use glam::IVec3;
 use lightvein::job::{Cancel, Progress, Quiet};
 use lightvein::skeleton::curve::Curve;
 use lightvein::skeleton::{thin, topology};
 use lightvein::voxel::bits::BitGrid;
 use ndarray::Array3;
+use rooms::{array_of_rooms, random};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -99,8 +102,8 @@ fn time_stages(threads: usize, size: [usize; 3], bytes: &[u8], runs: usize) -> f
         stages.end();
         thin(&void, &stages, &Cancel::new()).unwrap();
     }
-    let medians: BTreeMap<_, _> =
-        stages.times.lock().unwrap().iter().map(|(stage, times)| (*stage, median(times))).collect();
+    let times = stages.times.lock().unwrap();
+    let medians: BTreeMap<&str, f64> = times.iter().map(|(stage, times)| (stage.as_str(), median(times))).collect();
     let compared: f64 = COMPARED.iter().map(|stage| medians[stage]).sum();
     let total: f64 = medians.values().sum();
     print!("  {threads} thread{}:", if threads == 1 { " " } else { "s" });
@@ -124,50 +127,6 @@ fn time_peers(array: &Path, seconds: f64) {
         Ok(status) if status.success() => println!(),
         Ok(status) => println!("  peers skipped: {} ended with {status}\n", script.display()),
         Err(error) => println!("  peers skipped: python3 does not run: {error}\n"),
-    }
-}
-
-/// Rooms of differing sizes on a grid, joined by doors to the side and shafts upwards; 1 is void, `[z][y][x]`.
-fn array_of_rooms(rooms: [usize; 3], pitch: usize, wall: usize) -> ([usize; 3], Vec<u8>) {
-    let size = rooms.map(|rooms| rooms * pitch + wall);
-    let mut bytes = vec![0; size.iter().product()];
-    let mut carve = |low: [usize; 3], high: [usize; 3]| {
-        for z in low[2]..high[2] {
-            for y in low[1]..high[1] {
-                bytes[low[0] + size[0] * (y + size[1] * z)..][..high[0] - low[0]].fill(1);
-            }
-        }
-    };
-    let mut random = random();
-    for room in 0..rooms.iter().product() {
-        let at = [room % rooms[0], room / rooms[0] % rooms[1], room / (rooms[0] * rooms[1])];
-        let low = at.map(|along| wall + pitch * along);
-        let high = low.map(|low| low + pitch - wall + random(2) - random(2));
-        carve(low, high);
-        // A door at the floor for three in four neighbours to the side, a shaft in the middle for one in three above.
-        for axis in 0..3 {
-            let joined = if axis == 2 { random(3) == 0 } else { random(4) > 0 };
-            if joined && at[axis] + 1 < rooms[axis] {
-                let (mut from, mut to) = (low.map(|low| low + pitch / 3), low.map(|low| low + pitch / 3 + 6));
-                if axis != 2 {
-                    (from[2], to[2]) = (low[2], low[2] + 12);
-                }
-                (from[axis], to[axis]) = (high[axis], low[axis] + pitch);
-                carve(from, to);
-            }
-        }
-    }
-    (size, bytes)
-}
-
-/// Whole numbers below what is asked for, that look random and are the same each time.
-fn random() -> impl FnMut(usize) -> usize {
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    move |below| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 33) as usize % below
     }
 }
 

@@ -27,12 +27,12 @@ const AT_DOOR_M: f64 = 0.3;
 
 /// Prints how long each stage took.
 #[derive(Default)]
-struct Clock(Mutex<Vec<(&'static str, Instant)>>);
+struct Clock(Mutex<Vec<(String, Instant)>>);
 
 impl Progress for Clock {
     fn begin(&self, stage: &str, _total: u64) {
         if let Ok(mut stages) = self.0.lock() {
-            stages.push((stage, Instant::now()));
+            stages.push((stage.to_owned(), Instant::now()));
         }
     }
 
