@@ -31,6 +31,17 @@ impl VoidPart {
 /// The voxel of a light or sensor.
 type Found = Result<VoxelIndex, Lost>;
 
+/// The void of the lights that stand in the open, if there are others: on a wall or in a beam, those prefer it to a hollow
+/// behind the face that they lie on.
+fn void_of_free(lights: &[Place], ground: &Ground) -> BitGrid {
+    let voxels = || lights.iter().map(|light| ground.lattice.voxel_at(light.point_m));
+    let mut flood = Flood::new(ground.solid);
+    if voxels().any(|voxel| ground.solid.get(voxel)) {
+        voxels().for_each(|voxel| _ = flood.flood(voxel));
+    }
+    flood.into_void()
+}
+
 /// All void voxels, the voids they make up (those of lights first), and which light and sensor stands in which. Without
 /// lights and sensors the largest enclosed void. Costs one flood, two where lights stand in several voids.
 ///
@@ -49,7 +60,7 @@ pub fn parted(
         voids.extend(largest.map(VoidPart::new));
     }
 
-    let lights = seeds::resolved(lights, ground, flood.void(), cancel)?;
+    let lights = seeds::resolved(lights, ground, &void_of_free(lights, ground), cancel)?;
     let part_of_light = flooded(&lights, &mut flood, &mut voids);
     let lit = voids.len();
     let sensors = seeds::resolved(sensors, ground, flood.void(), cancel)?;
