@@ -5,7 +5,8 @@ use crate::light::Field;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::space::VoxelIndex;
-use glam::Vec3;
+use crate::voxel::Voxels;
+use glam::{IVec3, Vec3};
 use petgraph::visit::EdgeRef;
 use std::io::{self, Write};
 
@@ -54,8 +55,11 @@ pub fn write(out: &mut dyn Write, scene: &Scene, model: &Model, at_nodes: &Field
     writeln!(out, "</svg>")
 }
 
-/// How metres become places on the sheet: x to the right, y up.
+/// How metres become places on the sheet: x to the right, y up. It shows the box around the void and a voxel more.
 struct Sheet {
+    /// Lowest and highest voxel shown, along x and y.
+    low: [usize; 2],
+    high: [usize; 2],
     low_m: Vec3,
     units_per_m: f32,
     height: f32,
@@ -63,9 +67,23 @@ struct Sheet {
 
 impl Sheet {
     fn of(model: &Model) -> Self {
-        let lattice = &model.voxels.lattice;
-        let [nx, ny, _] = lattice.size.map(|cells| cells as f32);
-        Self { low_m: lattice.origin_m, units_per_m: WIDTH / (nx * lattice.voxel_m), height: WIDTH * ny / nx }
+        let Voxels { lattice, void, .. } = &model.voxels;
+        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+        for VoxelIndex(at) in void.iter() {
+            for (axis, along) in [at.x, at.y].into_iter().enumerate() {
+                low[axis] = low[axis].min((along as usize).saturating_sub(1));
+                high[axis] = high[axis].max((along as usize + 1).min(lattice.size[axis] - 1));
+            }
+        }
+        let low = if void.is_empty() { [0; 2] } else { low };
+        let [wide, deep] = [0, 1].map(|axis| (high[axis] - low[axis] + 1) as f32);
+        Self {
+            low,
+            high,
+            low_m: lattice.corner_m(IVec3::new(low[0] as i32, low[1] as i32, 0)),
+            units_per_m: WIDTH / (wide * lattice.voxel_m),
+            height: WIDTH * deep / wide,
+        }
     }
 
     fn place(&self, point_m: Vec3) -> [f32; 2] {
@@ -74,12 +92,15 @@ impl Sheet {
     }
 }
 
-/// Columns that hold void, in runs along x; the more void a column has, the lighter.
+/// Columns that hold void, in runs along x.
 fn draw_void(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<()> {
-    let [nx, ny, nz] = model.voxels.lattice.size;
+    let [nx, ny] = [0, 1].map(|axis| sheet.high[axis] - sheet.low[axis] + 1);
     let stride = nx.max(ny).div_ceil(MOST_CELLS);
-    let has_void =
-        |x: usize, y: usize| (0..nz).any(|z| model.voxels.void.get(VoxelIndex::new(x as i32, y as i32, z as i32)));
+    let has_void = |x: usize, y: usize| {
+        let column = [x + sheet.low[0], y + sheet.low[1]].map(|along| along as i32);
+        let up = 0..model.voxels.lattice.size[2] as i32;
+        up.into_iter().any(|z| model.voxels.void.get(VoxelIndex::new(column[0], column[1], z)))
+    };
     let cell = WIDTH / nx as f32 * stride as f32;
     writeln!(out, r##"<g fill="#d9dde3">"##)?;
     for (row, y) in (0..ny).step_by(stride).enumerate() {
@@ -89,7 +110,7 @@ fn draw_void(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<()
             if run[0] {
                 let [left, top] = [MARGIN + start as f32 * cell, MARGIN + sheet.height - (row + 1) as f32 * cell];
                 let wide = run.len() as f32 * cell;
-                writeln!(out, r#"<rect x="{left:.1}" y="{top:.1}" width="{wide:.1}" height="{:.1}"/>"#, cell + 0.2)?;
+                writeln!(out, r#"<rect x="{left:.1}" y="{top:.1}" width="{wide:.1}" height="{:.1}"/>"#, cell + 0.6)?;
             }
             start += run.len();
         }
@@ -135,13 +156,14 @@ fn draw_necks(out: &mut dyn Write, model: &Model, sheet: &Sheet) -> io::Result<(
     writeln!(out, "</g>")
 }
 
-/// More sensors than this are drawn without their names.
+/// More sensors than this are drawn without their names, more lights than this as small dots.
 const MOST_NAMES: usize = 40;
 
 fn draw_points(out: &mut dyn Write, scene: &Scene, model: &Model, sheet: &Sheet) -> io::Result<()> {
+    let radius = if model.shining.len() > MOST_NAMES { 3.5 } else { 7.0 };
     for light in &model.shining {
         let [x, y] = sheet.place(light.position_m);
-        writeln!(out, r##"<circle cx="{x:.1}" cy="{y:.1}" r="7" fill="#ffd400" stroke="#333"/>"##)?;
+        writeln!(out, r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="#ffd400" stroke="#333"/>"##)?;
     }
     for sensor in &scene.sensors {
         let [x, y] = sheet.place(sensor.position_m);

@@ -45,10 +45,22 @@ fn from_light<'a>(lit: &'a Lit<'a>) -> AtProbe<'a> {
 }
 
 /// The node nearest to the light, along the path from the probe's own `node`, that the probe sees; `node` where it sees none.
+///
+/// Looks from the light's end in strides of half a ball, for what is seen of a ball is seen of its middle, and then node by
+/// node: a glimpse of the path shorter than that may be missed.
 fn farthest_seen(lit: &Lit, probe: &Probe, node: NodeIndex) -> NodeIndex {
     let path: Vec<NodeIndex> = lit.tree.path_from(node).collect();
-    let seen = path.iter().rev().find(|&&far| lit.model.rays.clear(probe.position_m, lit.model.node_m(far)));
-    seen.copied().unwrap_or(node)
+    let sees = |at: usize| lit.model.rays.clear(probe.position_m, lit.model.node_m(path[at]));
+    let stride = |at: usize| {
+        let ball = lit.model.skeleton.graph.node_weight(path[at]).map_or(0, |node| node.opening_voxels);
+        usize::from(ball / 2).max(1)
+    };
+
+    let last = path.len() - 1;
+    let from_light = std::iter::successors(Some(last), |&at| at.checked_sub(stride(at)));
+    let Some(seen) = from_light.into_iter().find(|&at| sees(at)) else { return node };
+    let beyond = (seen + 1..=last).take_while(|&at| sees(at)).last();
+    path[beyond.unwrap_or(seen)]
 }
 
 /// The light that comes by `end_m`, `along_m` of its way behind it.

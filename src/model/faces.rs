@@ -7,8 +7,8 @@ use glam::Vec3;
 /// Faces are cut until no edge is longer than this many voxels; below it the estimators have nothing more to tell.
 const LONGEST_EDGE_VOXELS: f32 = 8.0;
 
-/// A mesh is not cut into more faces than this; its edges may then be longer.
-const MOST_FACES: f32 = 200_000.0;
+/// Faces times lights are held to about this many, some seconds of work; the edges of faces may then be longer.
+const MOST_QUESTIONS: f32 = 200_000.0;
 
 impl Model {
     /// The mesh as small triangles whose front sees the void, three corners each, metres. Faces that no void touches are
@@ -17,7 +17,8 @@ impl Model {
         let triangles_m = || (0..scene.mesh.triangles.len()).filter_map(|triangle| scene.mesh.corners_m(triangle));
         let area_m2: f32 = triangles_m().map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum();
         // Two right triangles fill a square of the longest edge's half: at least area / edge^2 * 4 faces come of it.
-        let bound_m = (4.0 * area_m2 / MOST_FACES).sqrt();
+        let most_faces = MOST_QUESTIONS / self.shining.len().max(1) as f32;
+        let bound_m = (4.0 * area_m2 / most_faces).sqrt();
         let longest_m = (LONGEST_EDGE_VOXELS * self.voxels.lattice.voxel_m).max(bound_m);
 
         let mut small_m = Vec::new();
