@@ -1,18 +1,20 @@
 //! From the gallery's mesh to estimates at its sensors, voxels of 0.1 m: `cargo bench --bench gallery`.
 //!
 //! Prints medians of 15 runs after a warm-up for each stage and each estimator, for one thread and for two, and the peak
-//! memory of a run of the program. Loading the mesh is not counted, building the rays is.
+//! memory of a run of the program. Loading the mesh is not counted, building the rays is. Of the skeleton's time `sections`
+//! is a part, and of that `nearest`, which is timed once more by itself, after the rest.
 
 use lightvein::flow::estimator;
-use lightvein::job::{Cancel, Quiet};
+use lightvein::job::{Cancel, Progress, Quiet};
 use lightvein::light::Settings;
 use lightvein::model::{Model, places_of_patches};
 use lightvein::rays::Rays;
 use lightvein::scene::{Method, Scene};
 use lightvein::skeleton::Skeleton;
+use lightvein::skeleton::nearest::Nearest;
 use lightvein::voxel::voxelise;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 const RUNS: usize = 15;
@@ -30,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
 }
 
 fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    let names = ["rays", "voxels", "skeleton", "places", "backward", "forward", "all"];
+    let names = ["rays", "voxels", "skeleton", "places", "backward", "forward", "all", "sections", "nearest"];
     let mut times_ms = vec![Vec::new(); names.len()];
     for run in 0..=RUNS {
         let row = time_once(scene)?;
@@ -49,7 +51,7 @@ fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error + Send + S
 }
 
 /// One run; milliseconds in the order of the names.
-fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error + Send + Sync>> {
+fn time_once(scene: &Scene) -> Result<[f64; 9], Box<dyn std::error::Error + Send + Sync>> {
     let (progress, cancel, settings) = (Quiet, Cancel::new(), Settings::default());
     let began = Instant::now();
     let mut laps_ms = Vec::new();
@@ -60,7 +62,8 @@ fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error + Send
     let sources = lightvein::light::Sources::of(scene);
     let voxels = voxelise(scene, &rays, &places_of_patches(scene, &sources), VOXEL_M, u64::MAX, &progress, &cancel)?;
     lap();
-    let skeleton = Skeleton::build(&voxels, &rays, &progress, &cancel)?;
+    let sections = Stopwatch { stage: "sections", began: Mutex::default(), took_ms: Mutex::default() };
+    let skeleton = Skeleton::build(&voxels, &rays, &sections, &cancel)?;
     lap();
     let model = Model::of(rays, sources, voxels, skeleton);
     let probes = model.probes_at_sensors(scene);
@@ -72,10 +75,42 @@ fn time_once(scene: &Scene) -> Result<[f64; 7], Box<dyn std::error::Error + Send
     }
     let all_ms = began.elapsed().as_secs_f64() * 1e3;
     let mut before_ms = 0.0;
-    let mut row = [all_ms; 7];
+    let mut row = [all_ms; 9];
     for (stage_ms, lap_ms) in row.iter_mut().zip(laps_ms) {
         *stage_ms = lap_ms - before_ms;
         before_ms = lap_ms;
     }
+    row[7] = *sections.took_ms.lock().map_err(|_| "a stage panicked")?;
+    let lattice = model.skeleton.lattice;
+    let nodes = model.skeleton.graph.node_weights();
+    let corners: Vec<_> = nodes.map(|node| lattice.point_in_grid(node.position_m).round().as_ivec3()).collect();
+    let began = Instant::now();
+    std::hint::black_box(Nearest::new(&model.voxels.void, &corners));
+    row[8] = began.elapsed().as_secs_f64() * 1e3;
     Ok(row)
+}
+
+/// Times one stage of those reported.
+struct Stopwatch {
+    stage: &'static str,
+    began: Mutex<Option<Instant>>,
+    took_ms: Mutex<f64>,
+}
+
+impl Progress for Stopwatch {
+    fn begin(&self, stage: &str, _total: u64) {
+        if let Ok(mut began) = self.began.lock() {
+            *began = (stage == self.stage).then(Instant::now);
+        }
+    }
+
+    fn advance(&self, _units: u64) {}
+
+    fn end(&self) {
+        if let (Ok(mut began), Ok(mut took_ms)) = (self.began.lock(), self.took_ms.lock())
+            && let Some(began) = began.take()
+        {
+            *took_ms += began.elapsed().as_secs_f64() * 1e3;
+        }
+    }
 }

@@ -6,9 +6,12 @@
 use crate::rays::Rays;
 use crate::space::{Lattice, VoxelIndex};
 use crate::voxel::bits::BitGrid;
-use crate::voxel::brick::{self, EDGE};
+use crate::voxel::brick;
 use crate::voxel::levels::Levels;
 use glam::{IVec3, Vec3};
+
+/// Voxels along an edge of a brick.
+const BRICK: i32 = brick::EDGE as i32;
 
 /// Voxels and surfaces of one scene.
 pub(crate) struct Matter<'a> {
@@ -22,42 +25,68 @@ pub(crate) struct Matter<'a> {
     pub rays: &'a Rays,
 }
 
+/// A ray in units of voxels.
+pub(crate) struct VoxelRay {
+    from: Vec3,
+    direction: Vec3,
+    /// Voxels along the ray a voxel along each axis.
+    inverse: Vec3,
+}
+
+impl VoxelRay {
+    /// From a point of the grid along a unit vector.
+    pub fn new(from: Vec3, direction: Vec3) -> Self {
+        let inverse = Vec3::select(direction.abs().cmplt(Vec3::splat(1e-6)), Vec3::INFINITY, direction.recip());
+        Self { from, direction, inverse }
+    }
+
+    /// The voxel that it is in.
+    #[inline(always)]
+    fn voxel(&self, along: f32) -> VoxelIndex {
+        let at = self.from + self.direction * along;
+        // Rounds down without a call to the C library.
+        let whole = at.as_ivec3();
+        VoxelIndex(whole - IVec3::select(at.cmplt(whole.as_vec3()), IVec3::ONE, IVec3::ZERO))
+    }
+
+    /// Where it leaves the cube of `2 free - 1` voxels around a voxel.
+    #[inline(always)]
+    fn leave_cube(&self, VoxelIndex(at): VoxelIndex, free: u16, along: f32) -> f32 {
+        let (low, high) = (at - (i32::from(free) - 1), at + i32::from(free));
+        let ahead = self.direction.cmpgt(Vec3::ZERO);
+        let far = Vec3::select(ahead, high.as_vec3(), low.as_vec3()) - self.from;
+        // Along an axis that it does not follow it never leaves.
+        let out = Vec3::select(self.inverse.cmpeq(Vec3::INFINITY), Vec3::INFINITY, far * self.inverse);
+        // Rounding must not hold the ray on the cube's face.
+        out.min_element().max(along) + 1e-3
+    }
+}
+
 impl Matter<'_> {
-    /// Where a ray leaves the void, in voxels along it; `from` in units of voxels, `start` how far along to begin. At once
-    /// `start` when it is not in the void there. The grid's border ends every ray.
-    pub fn leave_void(&self, from: Vec3, direction: Vec3, start: f32) -> f32 {
+    /// Where a ray leaves the void, in voxels along it; `start` how far along to begin. At once `start` when it is not in
+    /// the void there. The grid's border ends every ray.
+    pub fn leave_void(&self, ray: &VoxelRay, start: f32) -> f32 {
         let mut along = start;
         loop {
-            let voxel = voxel_on(from, direction, along);
+            let voxel = ray.voxel(along);
             match self.distance.at(voxel) {
                 0 => return along,
-                free => along = self.leave_cube(from, direction, voxel, free, along),
+                free => along = ray.leave_cube(voxel, free, along),
             }
         }
     }
 
     /// Where a ray comes back into the void, from `start` on, in voxels along it; at most `depth` further.
-    pub fn enter_void(&self, from: Vec3, direction: Vec3, start: f32, depth: f32) -> f32 {
+    pub fn enter_void(&self, ray: &VoxelRay, start: f32, depth: f32) -> f32 {
         let mut along = start;
-        loop {
-            let voxel = voxel_on(from, direction, along);
-            if along >= start + depth {
-                return start + depth;
-            }
-            if self.distance.at(voxel) > 0 {
+        while along < start + depth {
+            let voxel = ray.voxel(along);
+            if self.void.get(voxel) {
                 return along;
             }
-            along = self.leave_cube(from, direction, voxel, 1, along);
+            along = ray.leave_cube(voxel, 1, along);
         }
-    }
-
-    /// Where a ray leaves the cube of `2 free - 1` voxels around a voxel.
-    fn leave_cube(&self, from: Vec3, direction: Vec3, VoxelIndex(at): VoxelIndex, free: u16, along: f32) -> f32 {
-        let (low, high) = (at - (i32::from(free) - 1), at + i32::from(free));
-        let far = Vec3::select(direction.cmpgt(Vec3::ZERO), high.as_vec3(), low.as_vec3());
-        let out = Vec3::select(direction.abs().cmplt(Vec3::splat(1e-6)), Vec3::INFINITY, (far - from) / direction);
-        // Rounding must not hold the ray on the cube's face.
-        out.min_element().max(along) + 1e-3
+        start + depth
     }
 
     /// Euclidean distance from a lattice corner to the nearest matter, metres.
@@ -75,63 +104,75 @@ impl Matter<'_> {
         exact.filter(|exact| (exact - rough).abs() < 1.0).unwrap_or(rough) * voxel_m
     }
 
-    /// From a lattice corner straight to the nearest voxel that is not void, in voxels; to the first in the order of
-    /// bricks of equally near ones. Outside the grid nothing is void.
+    /// From a lattice corner straight to the nearest voxel that is not void, in voxels; of equally near ones to the first
+    /// in z, then y, then x. Outside the grid nothing is void.
     fn gap(&self, corner: IVec3) -> Vec3 {
         let size = IVec3::from_array(self.void.size().map(|along| along as i32));
-        let bricks = self.void.bricks();
         let axes = IVec3::AXES.into_iter();
         let borders = axes.flat_map(|axis| [-axis * corner, axis * (size - corner)]);
-        let mut best = borders.min_by_key(|gap| gap.length_squared()).unwrap_or(IVec3::ZERO);
+        let mut best = borders.min_by_key(|gap| order(*gap)).unwrap_or(IVec3::ZERO);
 
-        // Bricks in growing cubes around the corner, until the cube is beyond the best.
-        let home = (corner - 1) / EDGE as i32;
-        for ring in 0.. {
-            let nearest = EDGE as i32 * (ring - 1).max(0);
-            if nearest * nearest >= best.length_squared() {
+        // Bricks in growing cubes around the corner, from where there can be matter until the cube is beyond the best.
+        let home = (corner - 1) / BRICK;
+        let empty = i32::from(self.distance.at_corner(corner)) - 1;
+        for ring in empty / BRICK.. {
+            if (BRICK * (ring - 1).max(0)).pow(2) > best.length_squared() {
                 break;
             }
-            for at in shell(ring).map(|offset| home + offset) {
-                let inside = at.min_element() >= 0 && (0..3).all(|axis| (at[axis] as usize) < bricks[axis]);
-                let low = at * EDGE as i32 - corner;
-                if !inside || gap_to(low, EDGE as i32).length_squared() >= best.length_squared() {
-                    continue;
-                }
-                let number = at.x as usize + bricks[0] * (at.y as usize + bricks[1] * at.z as usize);
-                let matter = !self.void.words()[number] & self.void.inside(number);
-                for bit in brick::ones(matter).map(|bit| bit as i32) {
-                    let gap = gap_to(low + IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4), 1);
-                    if gap.length_squared() < best.length_squared() {
-                        best = gap;
+            for z in (0..=2 * ring).map(outwards) {
+                let gap_z = gap_along(BRICK * (home.z + z) - corner.z, BRICK);
+                for y in (0..=2 * ring).map(outwards) {
+                    let gap_y = gap_along(BRICK * (home.y + y) - corner.y, BRICK);
+                    if gap_z * gap_z + gap_y * gap_y > best.length_squared() {
+                        continue;
+                    }
+                    let full = z.abs() == ring || y.abs() == ring;
+                    for x in (if full { 0 } else { 2 * ring - 1 }..=2 * ring).map(outwards) {
+                        best = self.nearer(best, corner, home + IVec3::new(x, y, z));
                     }
                 }
             }
         }
         best.as_vec3()
     }
+
+    /// The best gap so far, or one to a voxel of a brick that is better.
+    fn nearer(&self, best: IVec3, corner: IVec3, at: IVec3) -> IVec3 {
+        let bricks = IVec3::from_array(self.void.bricks().map(|along| along as i32));
+        let low = at * BRICK - corner;
+        if at.min_element() < 0 || at.cmpge(bricks).any() || gap_to(low, BRICK).length_squared() > best.length_squared()
+        {
+            return best;
+        }
+        let number = (at.x + bricks.x * (at.y + bricks.y * at.z)) as usize;
+        let matter = match self.void.words()[number] {
+            u64::MAX => return best,
+            word => !word & self.void.inside(number),
+        };
+        let voxels = brick::ones(matter).map(|bit| bit as i32);
+        let gaps = voxels.map(|bit| gap_to(low + IVec3::new(bit & 3, bit >> 2 & 3, bit >> 4), 1));
+        gaps.chain([best]).min_by_key(|gap| order(*gap)).unwrap_or(best)
+    }
+}
+
+/// The shorter of two gaps comes first, of equals the lower.
+fn order(gap: IVec3) -> (i32, i32, i32, i32) {
+    (gap.length_squared(), gap.z, gap.y, gap.x)
 }
 
 /// From the origin straight to the cube with that lowest corner and edge.
 fn gap_to(low: IVec3, edge: i32) -> IVec3 {
-    low.max(IVec3::ZERO) + (low + edge).min(IVec3::ZERO)
+    IVec3::from_array(low.to_array().map(|low| gap_along(low, edge)))
 }
 
-/// The voxel that a ray is in.
-fn voxel_on(from: Vec3, direction: Vec3, along: f32) -> VoxelIndex {
-    VoxelIndex((from + direction * along).floor().as_ivec3())
+/// From the origin to the span from `low` on, along one axis.
+fn gap_along(low: i32, edge: i32) -> i32 {
+    low.max(0) + (low + edge).min(0)
 }
 
-/// The offsets whose largest coordinate is `ring`.
-fn shell(ring: i32) -> impl Iterator<Item = IVec3> {
-    let all = -ring..=ring;
-    all.clone().flat_map(move |z| {
-        let all = all.clone();
-        all.clone().flat_map(move |y| {
-            let full = z.abs() == ring || y.abs() == ring;
-            let step = if full || ring == 0 { 1 } else { 2 * ring as usize };
-            (-ring..=ring).step_by(step).map(move |x| IVec3::new(x, y, z))
-        })
-    })
+/// 0, -1, 1, -2, 2 and so on, by their places.
+fn outwards(place: i32) -> i32 {
+    if place % 2 == 0 { place / 2 } else { -(place + 1) / 2 }
 }
 
 #[cfg(test)]
@@ -207,8 +248,8 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn shells_fill_the_cube() {
-        assert_eq!((0..4).map(|ring| shell(ring).count()).sum::<usize>(), 7 * 7 * 7);
+    fn outwards_goes_to_both_sides() {
+        assert_eq!((0..5).map(outwards).collect::<Vec<_>>(), [0, -1, 1, -2, 2]);
     }
 
     #[test]
@@ -219,10 +260,11 @@ pub(crate) mod tests {
         );
         let matter = grid.matter();
         let from = Vec3::new(4.0, 4.0, 4.0);
-        let leave = matter.leave_void(from, Vec3::X, 0.0);
+        let ahead = VoxelRay::new(from, Vec3::X);
+        let leave = matter.leave_void(&ahead, 0.0);
         assert!((leave - 5.0).abs() < 0.01, "{leave}");
-        assert!((matter.enter_void(from, Vec3::X, leave, 8.0) - 8.0).abs() < 0.01);
-        assert!((matter.enter_void(from, Vec3::X, leave, 2.0) - 7.0).abs() < 0.01);
-        assert!((matter.leave_void(from, -Vec3::X, 0.0) - 2.0).abs() < 0.01);
+        assert!((matter.enter_void(&ahead, leave, 8.0) - 8.0).abs() < 0.01);
+        assert!((matter.enter_void(&ahead, leave, 2.0) - 7.0).abs() < 0.01);
+        assert!((matter.leave_void(&VoxelRay::new(from, -Vec3::X), 0.0) - 2.0).abs() < 0.01);
     }
 }

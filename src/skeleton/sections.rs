@@ -9,7 +9,7 @@
 //! The fan sees what is in sight from its point; parts of the section behind a corner are not in it. Flat rooms are why
 //! the ball's own area is no section: it is the height's, not the room's.
 
-use super::matter::Matter;
+use super::matter::{Matter, VoxelRay};
 use glam::Vec3;
 use std::f32::consts::TAU;
 
@@ -19,6 +19,9 @@ pub const RAYS: usize = 32;
 /// Beyond the first voxel that is not void, a wall is looked for no further than this many voxels: a ray that meets a wall
 /// at 5 degrees runs six voxels from the voxels of the wall to the wall itself.
 const DEPTH_VOXELS: f32 = 8.0;
+
+/// A wall this little behind where the void begins again still stands before it.
+const ROUNDING_VOXELS: f32 = 1e-3;
 
 /// The void across one point, in a plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,17 +84,19 @@ fn directions(normal: Vec3, rays: usize) -> impl Iterator<Item = Vec3> {
 /// How far the void reaches from a point of it in a direction, metres.
 fn reach_m(matter: &Matter, from_m: Vec3, direction: Vec3) -> f32 {
     let voxel_m = matter.lattice.voxel_m;
-    let from = matter.lattice.point_in_grid(from_m);
-    let enter = matter.leave_void(from, direction, 1e-3);
-    let end = matter.enter_void(from, direction, enter, DEPTH_VOXELS);
+    let ray = VoxelRay::new(matter.lattice.point_in_grid(from_m), direction);
+    let enter = matter.leave_void(&ray, 1e-3);
 
     // A little before the voxel, so that a surface on its very face is met.
     let start = (enter - 0.05).max(0.0);
-    let hit = matter.rays.closest(from_m + direction * (start * voxel_m), direction, (end - start) * voxel_m);
-    match hit {
-        Some(hit) => start * voxel_m + hit.distance_m,
-        None => (enter + 0.5 * (end - enter).min(1.0)) * voxel_m,
-    }
+    let most = DEPTH_VOXELS + enter - start;
+    let hit = matter.rays.closest(from_m + direction * (start * voxel_m), direction, most * voxel_m);
+    let wall = hit.map(|hit| start + hit.distance_m / voxel_m);
+
+    // Where the ray comes back into the void first, it has passed beside the wall.
+    let end = matter.enter_void(&ray, enter, wall.map_or(DEPTH_VOXELS, |wall| wall - enter));
+    let reach = wall.filter(|wall| *wall <= end + ROUNDING_VOXELS).unwrap_or(enter + 0.5 * (end - enter).min(1.0));
+    reach * voxel_m
 }
 
 #[cfg(test)]
