@@ -13,6 +13,8 @@ mod write;
 
 use crate::job::{Cancel, Cancelled};
 use clap::Parser;
+use std::fmt::Display;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Raised by Ctrl-C and by a polite kill.
@@ -31,22 +33,27 @@ pub fn main() -> ExitCode {
         CANCEL.cancel();
     };
     if let Err(error) = ctrlc::set_handler(second_time_ends_it) {
-        eprintln!("warning: Ctrl-C will end the program at once: {error}");
+        tell(format_args!("warning: Ctrl-C will end the program at once: {error}"));
     }
 
     match run::run(args, &CANCEL) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_interrupt(&error) => {
-            eprintln!("interrupted; nothing was written");
+            tell("interrupted; nothing was written");
             ExitCode::from(INTERRUPTED)
         }
         // A reader that closed the pipe early (`| head`) has had enough; that is not a failure of ours.
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            tell(format_args!("error: {error:#}"));
             ExitCode::FAILURE
         }
     }
+}
+
+/// A line on stderr. Where nobody reads it any more (`2>&1 | head`) it is lost, which is no failure of ours.
+fn tell(line: impl Display) {
+    _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// Whether a run ended because it was asked to; a job that stops for Ctrl-C may say so in a library error of its own.

@@ -4,6 +4,7 @@ use super::args::{Args, Command, Common};
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::stages::{Stages, available_bytes};
+use super::tell;
 use super::write::{self, Analysed, Folder};
 use crate::export;
 use crate::flow::estimator;
@@ -34,6 +35,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
 
 fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Result<()> {
     let stages = Stages::new(std::io::stderr().is_terminal());
+    let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
     let (mut scene, plan) = open(common, method, Settings::default(), &stages, cancel)?;
     let (model, mut warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
     let entry = compare_one(&scene, &model, plan.method, &plan.settings, &stages, cancel)?;
@@ -41,7 +43,6 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
     warn(&warnings);
 
     let name = plan.method.name();
-    let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
     if let Some(folder) = &mut folder {
         let analysed = Analysed {
             scene: &scene,
@@ -57,7 +58,7 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
     let json = serde_json::to_string(&analysis)?;
     if let Some(folder) = &mut folder {
         folder.file("report.json", |out| writeln!(out, "{json}"))?;
-        eprint!("{}", folder.listing());
+        folder.list();
     }
     if common.json {
         return say(&format!("{json}\n"));
@@ -74,6 +75,7 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
 
 fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &Cancel) -> Result<()> {
     let stages = Stages::new(std::io::stderr().is_terminal());
+    let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
     let settings = Settings { samples: spp.unwrap_or(Settings::default().samples), ..Settings::default() };
     let (mut scene, plan) = open(common, None, settings, &stages, cancel)?;
     let (model, mut warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
@@ -81,7 +83,9 @@ fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &C
         Some(_) if scene.reference.is_empty() => traced_reference(&scene, &model, &plan.settings, &stages, cancel)?,
         _ => scene.reference.clone(),
     };
-    let contestants: Vec<Contestant> = methods.iter().map(|&method| Contestant::built_in(method)).collect();
+    // A method named twice would run once more for the same answer.
+    let once = methods.iter().enumerate().filter(|(at, method)| !methods[..*at].contains(method));
+    let contestants: Vec<Contestant> = once.map(|(_, &method)| Contestant::built_in(method)).collect();
     let entries = compare(&scene, &model, &contestants, &reference, &plan.settings, &stages, cancel)?;
     warnings.extend(entries.iter().flat_map(|entry| entry.field.warnings.iter().cloned()));
     warn(&warnings);
@@ -90,10 +94,9 @@ fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &C
     let prepare_seconds = stages.seconds_of("voxels") + stages.seconds_of("skeleton");
     let comparison = Comparison::new(&scene, &model, &entries, &reference, prepare_seconds, seconds);
     let json = serde_json::to_string(&comparison)?;
-    if let Some(path) = &common.output {
-        let mut folder = Folder::new(path)?;
+    if let Some(folder) = &mut folder {
         folder.file("compare.json", |out| writeln!(out, "{json}"))?;
-        eprint!("{}", folder.listing());
+        folder.list();
     }
     if common.json {
         return say(&format!("{json}\n"));
@@ -109,11 +112,20 @@ fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &C
 
 fn run_trace(common: &Common, spp: u32, bounces: Option<u32>, cancel: &Cancel) -> Result<()> {
     let stages = Stages::new(std::io::stderr().is_terminal());
+    let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
     let settings = Settings { samples: spp, max_bounces: bounces, ..Settings::default() };
-    let (scene, plan) = open(common, None, settings, &stages, cancel)?;
-    warn(&scene.warnings);
-    let rays = Rays::new(&scene);
-    let field = trace::trace(&scene, &rays, &Sources::of(&scene), &plan.settings, &stages, cancel)?.field;
+    let (mut scene, plan) = open(common, None, settings, &stages, cancel)?;
+    let (rays, sources, warnings) = if scene.bare {
+        // Its light and its sensors are found by its cells.
+        let (model, warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
+        (model.rays, model.sources, warnings)
+    } else {
+        let sources = Sources::of(&scene);
+        let missing = missing(&scene, &sources);
+        (Arc::new(Rays::new(&scene)), sources, [scene.warnings.clone(), missing].concat())
+    };
+    warn(&warnings);
+    let field = trace::trace(&scene, &rays, &sources, &plan.settings, &stages, cancel)?.field;
     warn(&field.warnings);
 
     let bounces = bounces.map_or_else(|| "any number of".to_owned(), |bounces| bounces.to_string());
@@ -125,11 +137,10 @@ fn run_trace(common: &Common, spp: u32, bounces: Option<u32>, cancel: &Cancel) -
     );
     let mut table = Vec::new();
     export::reference::write_reference(&mut table, &origin, &scene.sensors, &field)?;
-    match &common.output {
-        Some(path) => {
-            let mut folder = Folder::new(path)?;
+    match &mut folder {
+        Some(folder) => {
             folder.file("reference.csv", |out| out.write_all(&table))?;
-            eprint!("{}", folder.listing());
+            folder.list();
             Ok(())
         }
         None => say(&String::from_utf8_lossy(&table)),
@@ -168,7 +179,7 @@ fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> 
         Some(voxel_m) => Model::build(scene, rays, voxel_m, max_bytes, stages, cancel)?,
         None => {
             let chosen = choose_voxel_m(scene, &rays, max_bytes, stages, cancel)?;
-            eprintln!("{}", chosen.reason);
+            tell(chosen.reason);
             chosen.model
         }
     };
@@ -176,13 +187,20 @@ fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> 
 
     let mut warnings = scene.warnings.clone();
     warnings.extend(model.voxels.warnings.iter().cloned());
-    if model.sources.emitters.is_empty() {
-        warnings.push("the scene has no light".to_owned());
-    }
+    warnings.extend(missing(scene, &model.sources));
     if plan.has_tolerance {
         warnings.push("the tolerance chooses nothing yet: the method is --method, the voxels are --voxel".to_owned());
     }
     Ok((model, warnings))
+}
+
+/// What a run can do without but its user hardly meant to leave out, a sentence each.
+fn missing(scene: &Scene, sources: &Sources) -> Vec<String> {
+    let missing = [
+        (sources.emitters.is_empty(), "the scene has no light"),
+        (scene.sensors.is_empty(), "the scene has no sensor"),
+    ];
+    missing.iter().filter(|(is_missing, _)| *is_missing).map(|(_, says)| (*says).to_owned()).collect()
 }
 
 /// One method at the sensors, with the scene's reference.
@@ -221,7 +239,7 @@ fn traced_reference(
 /// Warnings on stderr, a line each.
 fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        tell(format_args!("warning: {warning}"));
     }
 }
 

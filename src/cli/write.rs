@@ -1,29 +1,32 @@
 //! The files of a run: each whole or not at all, in a folder that is made if it is not there.
 
 use super::stages::Stages;
+use super::tell;
 use crate::export::{field, graphml, plan, ply, skeleton_json, swc, voxels, whole_file};
 use crate::flow::Estimator;
 use crate::job::{Cancel, Progress};
 use crate::light::{Field, Settings};
 use crate::model::{Model, Probe};
 use crate::scene::Scene;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A folder that files are written into.
+/// A folder that files are written into; made with its first file, so that a run that fails before leaves nothing.
 pub struct Folder<'a> {
     path: &'a Path,
     written: Vec<PathBuf>,
 }
 
 impl<'a> Folder<'a> {
-    /// The folder at `path`; made if it is not there.
+    /// The folder at `path`. What must stop a run before hours of work shows here: a file where a folder is to be.
     ///
     /// # Errors
-    /// Names the folder and what the file system says.
+    /// Names the file that is in the way.
     pub fn new(path: &'a Path) -> Result<Self> {
-        std::fs::create_dir_all(path).with_context(|| format!("{}: the folder cannot be made", path.display()))?;
+        if let Some(there) = path.ancestors().find(|part| part.exists() && !part.is_dir()) {
+            bail!("{}: the folder cannot be made: {} is not a folder", path.display(), there.display());
+        }
         Ok(Self { path, written: Vec::new() })
     }
 
@@ -32,15 +35,17 @@ impl<'a> Folder<'a> {
     /// # Errors
     /// Names the file and what the file system says.
     pub fn file(&mut self, name: &str, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+        std::fs::create_dir_all(self.path)
+            .with_context(|| format!("{}: the folder cannot be made", self.path.display()))?;
         let path = self.path.join(name);
         whole_file(&path, write).with_context(|| format!("{}: cannot be written", path.display()))?;
         self.written.push(path);
         Ok(())
     }
 
-    /// What was written, a line a file.
-    pub fn listing(&self) -> String {
-        self.written.iter().map(|path| format!("wrote {}\n", path.display())).collect()
+    /// Lists on stderr what was written, a line a file.
+    pub fn list(&self) {
+        self.written.iter().for_each(|path| tell(format_args!("wrote {}", path.display())));
     }
 }
 

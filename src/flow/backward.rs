@@ -72,3 +72,77 @@ fn arrival(lit: &Lit, probe: &Probe, along_m: f64, end_m: glam::Vec3) -> Arrival
         towards: straight_m.normalize_or_zero(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::tests::{FLUX_W, close, field, lamp, modelled, room, sensor, two_rooms};
+    use crate::light::Status;
+    use crate::scene::Light;
+    use crate::voxel::test_scenes::boxed;
+    use glam::{DVec3, Vec3};
+    use std::f64::consts::PI;
+
+    const LIGHT_M: Vec3 = Vec3::new(2.0, 1.0, 1.5);
+
+    #[test]
+    fn where_the_light_is_seen_it_is_the_inverse_square_and_the_cosine() {
+        let at_m = Vec3::new(3.2, 1.0, 0.6);
+        let normals = [None, Some(Vec3::Z), Some(Vec3::NEG_X), Some(Vec3::NEG_Z)];
+        let sensors = normals.map(|normal| sensor(at_m, normal));
+        let field = field(&modelled(&two_rooms(), vec![lamp(LIGHT_M, FLUX_W)], sensors.into()), estimate);
+        let direct = FLUX_W / (4.0 * PI * 1.5 * 1.5);
+        for (reading, cosine) in field.readings.iter().zip([1.0, 0.6, 0.8]) {
+            close(reading.value_w_m2, cosine * direct);
+            assert!(reading.direction().distance(DVec3::new(-0.8, 0.0, 0.6)) < 1e-6);
+        }
+        assert_eq!((field.readings[3].value_w_m2, field.readings[3].status), (0.0, Status::Dark));
+    }
+
+    #[test]
+    fn round_the_corner_it_is_the_inverse_square_of_the_way() {
+        let at_m = Vec3::new(6.0, 0.7, 1.5);
+        let model = modelled(&two_rooms(), vec![lamp(LIGHT_M, FLUX_W)], vec![sensor(at_m, None)]);
+        let reading = field(&model, estimate).readings[0];
+        let way_m = (FLUX_W / (4.0 * PI * reading.value_w_m2)).sqrt();
+        // The shortest way there is, round the edges of the door; the veins keep to its middle.
+        let [first_m, last_m] = [3.8, 4.2].map(|x| Vec3::new(x, 2.0, 1.5));
+        let shortest_m = f64::from(LIGHT_M.distance(first_m) + first_m.distance(last_m) + last_m.distance(at_m));
+        assert!((shortest_m..1.3 * shortest_m).contains(&way_m), "{way_m} m, the shortest is {shortest_m} m");
+        let to_door = (Vec3::new(4.0, 2.5, 1.5) - at_m).as_dvec3();
+        assert!(reading.direction().angle_between(to_door).to_degrees() < 25.0, "{:?}", reading.direction());
+    }
+
+    #[test]
+    fn glazing_lets_its_share_through() {
+        let mut triangles = room();
+        let walls = triangles.len();
+        let pane = boxed(Vec3::new(1.5, 0.0, 0.0), Vec3::new(1.5, 3.0, 3.0));
+        triangles.extend(&pane[8..10]);
+        let lights = vec![lamp(Vec3::new(1.0, 1.5, 1.5), FLUX_W)];
+        let (mut scene, _) = modelled(&triangles, lights, vec![sensor(Vec3::new(2.5, 1.4, 1.5), None)]);
+        let glass = crate::scene::Material { transmittance: 0.5, ..scene.materials[0].clone() };
+        scene.materials.push(glass);
+        scene.mesh.material_of[walls..].fill(1);
+        let model = crate::flow::tests::model_of(&scene);
+        close(field(&(scene, model), estimate).readings[0].value_w_m2, 0.5 * FLUX_W / (4.0 * PI * (2.25 + 0.01)));
+    }
+
+    #[test]
+    fn behind_a_quad_light_comes_only_what_goes_round_it() {
+        let quad =
+            Light::Quad { corner_m: Vec3::new(1.4, 1.4, 2.2), u_m: Vec3::Y * 0.2, v_m: Vec3::X * 0.2, flux_w: FLUX_W };
+        let places = [-0.5, 0.5].map(|z| sensor(Vec3::new(1.5, 1.5, 2.2 + z), None));
+        let field = field(&modelled(&room(), vec![quad], places.into()), estimate);
+        close(field.readings[0].value_w_m2, FLUX_W / (4.0 * PI * 0.25));
+        assert!(field.readings[1].value_w_m2 < 0.5 * field.readings[0].value_w_m2, "{field:?}");
+    }
+
+    #[test]
+    fn at_the_light_itself_it_is_bounded_by_half_a_voxel() {
+        let model = modelled(&room(), vec![lamp(Vec3::splat(1.2), FLUX_W)], vec![sensor(Vec3::splat(1.2), None)]);
+        let reading = field(&model, estimate).readings[0];
+        close(reading.value_w_m2, FLUX_W / (4.0 * PI * model.1.nearest_m().powi(2)));
+        assert_eq!(reading.direction(), DVec3::ZERO);
+    }
+}

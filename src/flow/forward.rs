@@ -70,3 +70,46 @@ fn shares(skeleton: &Skeleton, tree: &PathTree) -> Vec<f64> {
     }
     share
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::inverse_square;
+    use crate::flow::tests::{FLUX_W, close, field, lamp, modelled, room, sensor, two_rooms, veins};
+    use glam::Vec3;
+
+    #[test]
+    fn a_neck_takes_its_share_for_good() {
+        // A chain through a neck of half the width, into a room, and to a dead end of a quarter.
+        let skeleton = veins(&[4, 4, 2, 8, 1], &[(0, 1, 1.0), (1, 2, 1.0), (2, 3, 1.0), (3, 4, 1.0)]);
+        let tree = PathTree::from(&skeleton, NodeIndex::new(0));
+        assert_eq!(shares(&skeleton, &tree), [1.0, 1.0, 0.25, 0.25, 0.25 / 64.0]);
+        let apart = veins(&[4, 4], &[]);
+        assert_eq!(shares(&apart, &PathTree::from(&apart, NodeIndex::new(0))), [1.0, 0.0]);
+    }
+
+    #[test]
+    fn in_one_room_it_is_the_inverse_square_of_the_way_by_the_middle() {
+        let (light_m, at_m) = (Vec3::new(1.0, 1.5, 1.0), Vec3::new(2.5, 2.0, 1.2));
+        let model = modelled(&room(), vec![lamp(light_m, FLUX_W)], vec![sensor(at_m, None)]);
+        let node_m = model.1.node_m(NodeIndex::new(0));
+        assert!(model.1.skeleton.graph.node_count() == 1 && node_m.distance(Vec3::splat(1.5)) < 0.1);
+        let reading = field(&model, estimate).readings[0];
+        let way_m = f64::from(at_m.distance(node_m)) + f64::from(node_m.distance(light_m));
+        close(reading.value_w_m2, inverse_square(FLUX_W, way_m, 0.0));
+        assert!(reading.direction().distance((light_m - at_m).as_dvec3().normalize()) < 1e-6);
+    }
+
+    #[test]
+    fn behind_a_door_it_is_less_than_the_way_alone_would_leave() {
+        let at_m = Vec3::new(6.5, 0.7, 1.5);
+        let model = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 1.0, 1.5), FLUX_W)], vec![sensor(at_m, None)]);
+        let reading = field(&model, estimate).readings[0];
+        let (light, place) = (&model.1.shining[0], model.1.probes_at_sensors(&model.0)[0].place.unwrap());
+        let tree = PathTree::from(&model.1.skeleton, light.place.unwrap());
+        let way_m = f64::from(model.1.node_m(place).distance(at_m)) + tree.distance_m[place.index()] + light.to_node_m;
+        let share = reading.value_w_m2 / inverse_square(FLUX_W, way_m, 0.0);
+        // The door is 1 m wide, the rooms are 3 m: a ninth, to the voxel.
+        assert!((0.06..0.16).contains(&share), "{share}");
+    }
+}

@@ -131,3 +131,6 @@ pub fn inverse_square(flux_w: f64, distance_m: f64, nearest_m: f64) -> f64 {
     let distance_m = distance_m.max(nearest_m);
     flux_w / (4.0 * PI * distance_m * distance_m)
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

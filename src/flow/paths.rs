@@ -98,3 +98,45 @@ impl PartialEq for Reached {
 }
 
 impl Eq for Reached {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::tests::veins;
+
+    fn numbers(nodes: impl IntoIterator<Item = NodeIndex>) -> Vec<usize> {
+        nodes.into_iter().map(NodeIndex::index).collect()
+    }
+
+    #[test]
+    fn of_two_ways_of_one_length_the_lower_node_is_taken() {
+        // Twice round a square, the sides in either order; node 4 stands alone.
+        let sides = [(0, 2, 1.0), (2, 3, 0.5), (0, 1, 1.0), (1, 3, 0.5)];
+        for turned in [false, true] {
+            let mut edges = sides.to_vec();
+            if turned {
+                edges.reverse();
+            }
+            let tree = PathTree::from(&veins(&[1; 5], &edges), NodeIndex::new(0));
+            assert_eq!(tree.distance_m, [0.0, 1.0, 1.0, 1.5, f64::INFINITY]);
+            assert_eq!(numbers(tree.parent.clone()), [0, 0, 0, 1, 4]);
+            assert_eq!(numbers(tree.order.clone()), [0, 1, 2, 3]);
+            assert_eq!(numbers(tree.path_from(NodeIndex::new(3))), [3, 1, 0]);
+            assert_eq!(numbers(tree.path_from(NodeIndex::new(4))), [4]);
+            assert!(tree.reaches(NodeIndex::new(3)) && !tree.reaches(NodeIndex::new(4)));
+        }
+    }
+
+    #[test]
+    fn a_detour_that_is_shorter_is_taken() {
+        let tree = PathTree::from(&veins(&[1; 3], &[(0, 2, 3.0), (0, 1, 1.0), (1, 2, 1.0)]), NodeIndex::new(2));
+        assert_eq!(tree.distance_m, [2.0, 1.0, 0.0]);
+        assert_eq!(numbers(tree.path_from(NodeIndex::new(0))), [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_root_beyond_the_skeleton_reaches_nothing() {
+        let tree = PathTree::from(&veins(&[1], &[]), NodeIndex::new(7));
+        assert!(tree.order.is_empty() && !tree.reaches(NodeIndex::new(0)) && !tree.reaches(NodeIndex::new(7)));
+    }
+}

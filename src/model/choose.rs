@@ -71,3 +71,34 @@ fn chosen(model: Model, because: &str) -> Chosen {
     let reason = format!("voxels of {voxel_m:.4} m: {because} ({components} components, {loops} loops, {necks} necks)");
     Chosen { model, reason }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Quiet;
+    use crate::scene::Light;
+    use crate::voxel::test_scenes::{boxed, scene_of};
+    use glam::Vec3;
+
+    /// A bar of 8 m that a wall without thickness parts at x = 3, with a slot of that width in it.
+    fn chosen(slot_m: f32) -> Chosen {
+        let mut triangles = boxed(Vec3::ZERO, Vec3::new(8.0, 0.6, 0.6));
+        let wall = boxed(Vec3::new(3.0, 0.0, 0.0), Vec3::new(3.0, 0.6 - slot_m, 0.6));
+        triangles.extend(&wall[8..10]);
+        let mut scene = scene_of(&triangles);
+        scene.lights.push(Light::Point { position_m: Vec3::new(1.0, 0.3, 0.3), flux_w: 1.0 });
+        let rays = Arc::new(Rays::new(&scene));
+        choose_voxel_m(&scene, &rays, u64::MAX, &Quiet, &Cancel::new()).unwrap()
+    }
+
+    #[test]
+    fn voxels_are_halved_until_the_slot_is_open() {
+        let first_m = 8.0 / FIRST_VOXELS_A_SIDE;
+        let Chosen { model, reason } = chosen(0.0);
+        assert_eq!((model.voxels.lattice.voxel_m, model.skeleton.necks.len()), (first_m, 0), "{reason}");
+        // Less than a voxel of the first size.
+        let Chosen { model, reason } = chosen(0.06);
+        assert!(model.voxels.lattice.voxel_m <= first_m / 2.0 && model.skeleton.necks.len() == 1, "{reason}");
+        assert!(reason.contains("opens no new passage"), "{reason}");
+    }
+}

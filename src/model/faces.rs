@@ -70,6 +70,32 @@ fn front(face_m: &[Vec3; 3]) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::{Cancel, Quiet};
+    use crate::rays::Rays;
+    use crate::scene::Light;
+    use crate::voxel::test_scenes::{boxed, scene_of};
+    use std::sync::Arc;
+
+    #[test]
+    fn the_walls_of_a_room_are_asked_on_the_inside() {
+        let mut scene = scene_of(&boxed(Vec3::ZERO, Vec3::splat(2.0)));
+        scene.lights.push(Light::Point { position_m: Vec3::splat(1.0), flux_w: 1.0 });
+        // A plate outside, which no void touches.
+        let first = scene.mesh.positions_m.len() as u32;
+        scene.mesh.positions_m.extend([Vec3::X * 4.0, Vec3::X * 5.0, Vec3::new(4.0, 1.0, 0.0)]);
+        scene.mesh.triangles.push([first, first + 1, first + 2]);
+        scene.mesh.material_of.push(0);
+        let rays = Arc::new(Rays::new(&scene));
+        let model = Model::build(&scene, rays, 0.1, u64::MAX, &Quiet, &Cancel::new()).unwrap();
+
+        let faces_m = model.faces_to_void(&scene);
+        let area_m2: f32 = faces_m.iter().map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum();
+        assert!((area_m2 - 24.0).abs() < 1e-3, "{area_m2}");
+        for probe in model.probes_at_faces(&faces_m) {
+            assert!(probe.place.is_ok());
+            assert!(probe.normal.unwrap().dot(Vec3::splat(1.0) - probe.position_m) > 0.9, "{probe:?}");
+        }
+    }
 
     #[test]
     fn cutting_keeps_the_area_and_bounds_the_edges() {

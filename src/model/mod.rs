@@ -107,8 +107,8 @@ impl Model {
         model
     }
 
-    /// The model for a scene whose lights alone have changed, standing in the same void.
-    pub fn relit(mut self, scene: &Scene) -> Self {
+    /// The model of a scene that had no light and now has some, standing in the same void.
+    fn lit(mut self, scene: &Scene) -> Self {
         self.sources = Sources::of(scene);
         self.shining = self.places_of_lights();
         self

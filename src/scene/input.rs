@@ -136,7 +136,8 @@ pub fn read_file(path: &Path, progress: &dyn Progress, cancel: &Cancel) -> Resul
     let failed = |error| SceneError::new(path, None, Kind::Read(error));
     let metadata = std::fs::metadata(path).map_err(failed)?;
     if !metadata.is_file() {
-        return Err(failed(std::io::Error::other("not a plain file")));
+        let what = if metadata.is_dir() { "it is a folder" } else { "it is not a plain file" };
+        return Err(failed(std::io::Error::other(what)));
     }
     let mut file = std::fs::File::open(path).map_err(failed)?;
 

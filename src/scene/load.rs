@@ -41,6 +41,9 @@ impl Scene {
             let description = read_scene_file(&loader.input(path, &bytes, 1.0))?;
             return loader.scene(description, false);
         }
+        if path.is_dir() {
+            return Err(SceneError::new(path, None, Kind::Read(std::io::Error::other("it is a folder"))));
+        }
         if Format::of(path).is_none() {
             let file = path.display().to_string();
             return Err(SceneError::new(path, None, Kind::UnknownFormat { file, known: FORMATS_AND_TOML }));

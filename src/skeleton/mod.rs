@@ -41,6 +41,23 @@ use curve::Curve;
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised.
+///
+/// ```
+/// use lightvein::job::{Cancel, Cancelled, Quiet};
+/// use lightvein::skeleton::{thin, topology};
+/// use lightvein::voxel::bits::BitGrid;
+///
+/// // A frame: a slab of 24 x 24 x 6 voxels with a hole through it.
+/// let size = [24, 24, 6];
+/// let bytes: Vec<u8> = (0..24 * 24 * 6)
+///     .map(|at| [at % 24, at / 24 % 24].map(|along| (8..16).contains(&along)) != [true, true])
+///     .map(u8::from)
+///     .collect();
+/// let curve = thin(&BitGrid::from_bytes(size, &bytes), &Quiet, &Cancel::new())?;
+/// let topology = topology::of_curve(&curve);
+/// assert_eq!((topology.components, topology.loops), (1, 1));
+/// # Ok::<(), Cancelled>(())
+/// ```
 pub fn thin(void: &BitGrid, progress: &dyn Progress, cancel: &Cancel) -> Result<Curve, Cancelled> {
     let board = staged(progress, "distance", || Chessboard::new(void, cancel))?;
     let opening = staged(progress, "opening", || opening::opening(void, &board, cancel))?;

@@ -86,3 +86,44 @@ fn run(
         Run::Trace => Ok(trace::trace(scene, &model.rays, &model.sources, settings, progress, cancel)?.field),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, room, sensor};
+    use crate::flow::{Arrival, add_lights, backward};
+    use crate::job::Quiet;
+    use glam::{DVec3, Vec3};
+
+    #[test]
+    fn a_heuristic_of_ones_own_runs_beside_the_built_in_ones_in_the_order_asked_for() {
+        let sensors = vec![sensor(Vec3::new(1.0, 1.0, 0.7), None)];
+        let (scene, model) = modelled(&room(), vec![lamp(Vec3::splat(1.5), FLUX_W)], sensors);
+        let own: &Estimator = &|model, probes, _, progress, cancel| {
+            let mut field = add_lights(model, probes, progress, cancel, |_| {
+                Box::new(|_, _| Arrival { irradiance_w_m2: 2.0, towards: DVec3::Z })
+            })?;
+            field.warnings.push("a guess".to_owned());
+            Ok(field)
+        };
+        let contestants = [
+            Contestant { name: "two".to_owned(), run: Run::Estimate(own) },
+            Contestant::built_in(Method::Trace),
+            Contestant::built_in(Method::Backward),
+        ];
+        let reference = [Some(Reference { irradiance_w_m2: 1.0, stderr_w_m2: 0.0, flux_w_m2: DVec3::Y })];
+        let settings = Settings { samples: 64, ..Settings::default() };
+        let entries = compare(&scene, &model, &contestants, &reference, &settings, &Quiet, &Cancel::new()).unwrap();
+
+        assert_eq!(entries.iter().map(|entry| entry.name.as_str()).collect::<Vec<_>>(), ["two", "trace", "backward"]);
+        assert_eq!(entries[0].field.readings[0].value_w_m2, 2.0);
+        assert_eq!(entries[0].field.warnings, ["two: a guess"]);
+        assert!((entries[0].errors.rms_factor.unwrap() - 2.0).abs() < 1e-12);
+        assert!((entries[0].errors.median_angle_deg.unwrap() - 90.0).abs() < 1e-9);
+        let traced = trace::trace(&scene, &model.rays, &model.sources, &settings, &Quiet, &Cancel::new()).unwrap();
+        assert_eq!(entries[1].field.readings, traced.field.readings);
+        let probes = model.probes_at_sensors(&scene);
+        let estimated = backward::estimate(&model, &probes, &settings, &Quiet, &Cancel::new()).unwrap();
+        assert_eq!(entries[2].field, estimated);
+    }
+}

@@ -60,6 +60,12 @@ pub fn fits(lattice: &Lattice, mesh_area_m2: f64, most_bytes: u64) -> bool {
     numbered && Memory::of(lattice, mesh_area_m2).total_bytes() <= most_bytes as f64
 }
 
+/// So many bytes, in GB.
+pub fn in_words(bytes: f64) -> String {
+    let gigabytes = bytes / 1e9;
+    if gigabytes < 1e6 { format!("{gigabytes:.1} GB") } else { format!("{gigabytes:.0e} GB") }
+}
+
 /// The smallest voxel (m) of two significant digits, above one that does not fit, with which the box from `low_m` to
 /// `high_m` fits; infinite where none does.
 pub fn smallest_voxel_m(low_m: Vec3, high_m: Vec3, mesh_area_m2: f64, most_bytes: u64, too_small_m: f32) -> f32 {

@@ -22,7 +22,7 @@ pub mod parts;
 pub mod seeds;
 pub mod surface;
 #[cfg(test)]
-mod test_scenes;
+pub(crate) mod test_scenes;
 pub mod touch;
 
 use crate::job::{Cancel, Cancelled, Progress};
@@ -72,11 +72,21 @@ pub enum VoxelError {
         /// The size asked for, metres.
         voxel_m: f32,
     },
+    /// The voxels are larger than the mesh.
+    #[error(
+        "voxels of {voxel_m:?} m are larger than the mesh, {longest_m} m at its longest: none of its voids would stay open"
+    )]
+    TooCoarse {
+        /// The size asked for, metres.
+        voxel_m: f32,
+        /// The longest side of the mesh, metres.
+        longest_m: f32,
+    },
     /// The grid would not fit.
     #[error(
-        "voxels of {voxel_m} m make a grid of {} x {} x {} that takes {:.1} GB with its skeleton; the bound is {:.1} GB \
+        "voxels of {voxel_m:?} m make a grid of {} x {} x {} that takes {} with its skeleton; the bound is {} \
          and {} voxels: --voxel {fitting_m} would fit",
-        size[0], size[1], size[2], needed_bytes / 1e9, *most_bytes as f64 / 1e9, memory::MOST_VOXELS
+        size[0], size[1], size[2], memory::in_words(*needed_bytes), memory::in_words(*most_bytes as f64), memory::MOST_VOXELS
     )]
     TooLarge {
         /// The size asked for, metres.
@@ -100,7 +110,7 @@ pub enum VoxelError {
 /// reported to `progress`. The same bits for any number of threads.
 ///
 /// # Errors
-/// [`VoxelError`] for a scene without triangles, a size that is not positive, a grid that with its skeleton would take more
+/// [`VoxelError`] for a scene without triangles, a size that is not positive or above that of the mesh, a grid that with its skeleton would take more
 /// than `most_bytes` (nothing was allocated then), and when `cancel` was raised.
 pub fn voxelise(
     scene: &Scene,
@@ -168,6 +178,10 @@ fn fitting_lattice(scene: &Scene, voxel_m: f32, most_bytes: u64) -> Result<Latti
     let (low_m, high_m) = scene.mesh.bounds_m().ok_or(VoxelError::NoMesh)?;
     if !(voxel_m.is_finite() && voxel_m > 0.0) {
         return Err(VoxelError::VoxelSize { voxel_m });
+    }
+    let longest_m = (high_m - low_m).max_element();
+    if voxel_m > longest_m {
+        return Err(VoxelError::TooCoarse { voxel_m, longest_m });
     }
     let lattice = Lattice::around(low_m, high_m, voxel_m);
     let triangles = (0..scene.mesh.triangles.len()).filter_map(|triangle| scene.mesh.corners_m(triangle));
@@ -280,6 +294,16 @@ mod tests {
     }
 
     #[test]
+    fn a_light_on_a_wall_shines_into_the_room_of_the_sensors() {
+        let mut scene = scene_of(&boxed(Vec3::ZERO, Vec3::splat(2.0)));
+        let places = [Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(1.0, 2.0, 1.0)];
+        scene.lights.extend(places.map(lamp));
+        scene.sensors.push(sensor(Vec3::splat(1.0)));
+        let voxels = voxels_of(&scene, 0.1);
+        assert_eq!((voxels.voids.len(), voxels.voids[0].leaks), (1, false));
+    }
+
+    #[test]
     fn a_box_without_a_lid_leaks_and_says_so() {
         let mut triangles = boxed(Vec3::ZERO, Vec3::splat(2.0));
         triangles.retain(|triangle| !triangle.iter().all(|corner| corner.z == 2.0));
@@ -379,6 +403,8 @@ mod tests {
         for bad in [0.0, -0.1, f32::NAN, f32::INFINITY] {
             assert!(matches!(try_with(&scene, bad, 1 << 30), VoxelError::VoxelSize { .. }));
         }
+        let coarse = VoxelError::TooCoarse { voxel_m: 2.1, longest_m: 2.0 };
+        assert_eq!(try_with(&scene, 2.1, 1 << 30), coarse);
         for tiny in [1e-3, 1e-12, f32::MIN_POSITIVE] {
             let error = try_with(&scene, tiny, 1 << 20);
             let VoxelError::TooLarge { fitting_m, .. } = error else { panic!("{error}") };

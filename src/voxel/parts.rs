@@ -32,12 +32,15 @@ impl VoidPart {
 type Found = Result<VoxelIndex, Lost>;
 
 /// The void of the lights that stand in the open, if there are others: on a wall or in a beam, those prefer it to a hollow
-/// behind the face that they lie on.
-fn void_of_free(lights: &[Place], ground: &Ground) -> BitGrid {
-    let voxels = || lights.iter().map(|light| ground.lattice.voxel_at(light.point_m));
+/// behind the face that they lie on. Where no light stands in the open, the void of the sensors that do.
+fn void_of_free(lights: &[Place], sensors: &[Place], ground: &Ground) -> BitGrid {
+    let voxel = |place: &Place| ground.lattice.voxel_at(place.point_m);
     let mut flood = Flood::new(ground.solid);
-    if voxels().any(|voxel| ground.solid.get(voxel)) {
-        voxels().for_each(|voxel| _ = flood.flood(voxel));
+    if lights.iter().any(|light| ground.solid.get(voxel(light))) {
+        lights.iter().for_each(|light| _ = flood.flood(voxel(light)));
+        if flood.void().is_empty() {
+            sensors.iter().for_each(|sensor| _ = flood.flood(voxel(sensor)));
+        }
     }
     flood.into_void()
 }
@@ -60,7 +63,7 @@ pub fn parted(
         voids.extend(largest.map(VoidPart::new));
     }
 
-    let lights = seeds::resolved(lights, ground, &void_of_free(lights, ground), cancel)?;
+    let lights = seeds::resolved(lights, ground, &void_of_free(lights, sensors, ground), cancel)?;
     let part_of_light = flooded(&lights, &mut flood, &mut voids);
     let lit = voids.len();
     let sensors = seeds::resolved(sensors, ground, flood.void(), cancel)?;

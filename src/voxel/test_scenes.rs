@@ -1,4 +1,4 @@
-//! Small meshes for the tests of this folder.
+//! Small meshes for the tests of voxels and of what is made of them.
 
 use crate::scene::{Material, Mesh, Scene};
 use glam::{Quat, Vec3};

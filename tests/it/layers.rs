@@ -91,7 +91,7 @@ fn sources() -> Vec<(String, PathBuf, String)> {
             let inside = path.strip_prefix(root()).unwrap();
             let first = inside.components().next().unwrap().as_os_str().to_str().unwrap();
             let module = first.trim_end_matches(".rs").to_owned();
-            let is_test = path.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("tests"));
+            let is_test = path.file_stem().is_some_and(|stem| stem.to_string_lossy().starts_with("test"));
             if module != "lib" && module != "main" && !is_test {
                 found.push((module, path.clone(), code_of(&fs::read_to_string(&path).unwrap())));
             }
@@ -101,9 +101,10 @@ fn sources() -> Vec<(String, PathBuf, String)> {
     found
 }
 
-/// The code of a file: no comments, nothing from its first test module on.
+/// The code of a file: no comments, nothing from its `mod tests` on.
 fn code_of(text: &str) -> String {
-    let before_tests = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let text = text.replace("pub(crate) mod tests", "mod tests");
+    let before_tests = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     before_tests.lines().filter(|line| !line.trim_start().starts_with("//")).map(|line| format!("{line}\n")).collect()
 }
 

@@ -20,6 +20,9 @@ mod program;
 /// The generated scenes, modelled.
 mod modelled;
 
+/// The files that are written.
+mod written;
+
 /// Topology kept, structures valid, on every scene.
 mod topology;
 

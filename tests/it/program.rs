@@ -181,13 +181,144 @@ fn trace_gives_rows_that_a_scene_can_refer_to() {
 fn an_interrupt_ends_it_with_130_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let arguments = ["trace", GALLERY, "--spp", "400000000", "-o", out.to_str().unwrap()];
-    let child = lightvein(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let scene = house(&folder.path().join("house"), &format!("{LAMP}{SENSORS}"));
+    // Each would take minutes and more.
+    let commands: [&[&str]; 3] = [
+        &["trace", GALLERY, "--spp", "400000000"],
+        &["compare", &scene, "--voxel", "0.1", "--spp", "400000000"],
+        &["analyse", &scene, "--voxel", "0.006"],
+    ];
+    let children = commands.map(|command| {
+        let mut command = lightvein(command);
+        command.args(["-o", out.to_str().unwrap()]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    });
     std::thread::sleep(Duration::from_millis(700));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
-    assert_eq!(files(folder.path()), Vec::<PathBuf>::new());
+    for child in &children {
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    }
+    for child in children {
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).ends_with("interrupted; nothing was written\n"), "{}", text(&output.stderr));
+        assert!(output.stdout.is_empty() && !out.exists());
+    }
+}
+
+/// A reader that has had enough, of tables or of warnings, is no failure.
+#[test]
+fn streams_that_close_early_are_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    // A scene that is warned of.
+    let scene = house(folder.path(), "");
+    for arguments in [["analyse", &scene], ["compare", &scene], ["trace", &scene]] {
+        let mut child = lightvein(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop((child.stdout.take(), child.stderr.take()));
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{arguments:?}");
+    }
+    let mut child = lightvein(&["analyse", "no/such.toml"]).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+}
+
+const LAMP: &str = "[[lights]]\nkind = \"point\"\nposition = [2.0, 1.5, 1.2]\nflux_w = 100.0\n";
+const SENSORS: &str = "[sensors]\nfile = \"sensors.csv\"\n";
+
+/// Two closed rooms beside each other, 4 x 3 x 2.5 m and 3 x 3 x 2.5 m, with sensors in the first, in the second, in a wall
+/// and outside; `rest` is what the scene file says besides. Gives the scene file.
+fn house(folder: &Path, rest: &str) -> String {
+    let mut mesh = String::new();
+    for (number, [low, high]) in [[0, 4], [6, 9]].into_iter().enumerate() {
+        for corner in 0..8 {
+            let pick = |bit: usize, low: f32, high: f32| if corner >> bit & 1 == 0 { low } else { high };
+            mesh += &format!("v {} {} {}\n", pick(0, low as f32, high as f32), pick(1, 0.0, 3.0), pick(2, 0.0, 2.5));
+        }
+        for quad in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+            let [a, b, c, d] = quad.map(|corner: usize| corner + 1 + 8 * number);
+            mesh += &format!("f {a} {b} {c} {d}\n");
+        }
+    }
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join("house.obj"), mesh).unwrap();
+    let sensors = "id,x,y,z,nx,ny,nz\nfirst,1,1,1,,,\nsecond,7.5,1.5,1,,,\nwall,4,1.5,1,-1,0,0\nback,4,1.5,1,1,0,0\nout,40,1,1,,,\n";
+    fs::write(folder.join("sensors.csv"), sensors).unwrap();
+    let scene = folder.join("house.toml");
+    let head = "[model]\nvoxel_m = 0.1\n[geometry]\nmeshes = [\"house.obj\"]\nreflectance = 0.5\n";
+    fs::write(&scene, format!("{head}{rest}")).unwrap();
+    scene.to_str().unwrap().to_owned()
+}
+
+/// The object that `--json` gives, and what stderr says.
+#[track_caller]
+fn json(arguments: &[&str]) -> (Value, String) {
+    let output = lightvein(arguments).arg("--json").output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    (serde_json::from_slice(&output.stdout).unwrap(), text(&output.stderr))
+}
+
+#[test]
+fn every_sensor_is_told_what_became_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let lamp_at = |position: &str| LAMP.replace("2.0, 1.5, 1.2", position);
+    let lit = "ok unreached ok unreached outside";
+    for (lights, statuses, says) in [
+        (LAMP.to_owned(), lit, "stand in voids that no light reaches"),
+        (LAMP.to_owned() + &lamp_at("7.0, 1.5, 1.2"), "ok ok ok unreached outside", "2 separate voids"),
+        (LAMP.replace("100.0", "0.0"), "dark unreached dark unreached outside", "outside the box"),
+        (lamp_at("2.0, 1.5, 0.0"), lit, "outside the box"),
+        (lamp_at("50.0, 1.5, 1.2"), "unreached unreached unreached unreached outside", "1 light(s) lie outside"),
+        (String::new(), "unreached unreached unreached unreached outside", "the scene has no light"),
+    ] {
+        let scene = house(folder.path(), &format!("{lights}{SENSORS}"));
+        let (json, stderr) = json(&["analyse", &scene]);
+        let found: Vec<&str> =
+            json["sensors"].as_array().unwrap().iter().map(|sensor| sensor["status"].as_str().unwrap()).collect();
+        assert_eq!(found.join(" "), statuses, "{lights}");
+        assert!(stderr.contains(says), "{says}: {stderr}");
+    }
+    let (json, stderr) = json(&["compare", &house(folder.path(), LAMP), "--methods", "forward,forward"]);
+    assert!(stderr.contains("the scene has no sensor"), "{stderr}");
+    assert_eq!(json["methods"].as_array().unwrap().len(), 1, "a method named twice runs once");
+}
+
+#[test]
+fn voxels_larger_than_the_mesh_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = house(folder.path(), LAMP);
+    for metres in ["9.5", "1e30"] {
+        refuses(&["analyse", &scene, "--voxel", metres], 1, "larger than the mesh, 9 m at its longest");
+    }
+    refuses(&["analyse", &scene, "--voxel", "1e-30"], 1, "voxels of 1e-30 m");
+}
+
+#[test]
+fn a_folder_as_a_scene_and_a_file_as_a_folder_are_named_at_once() {
+    refuses(&["analyse", "scenes"], 1, "scenes: cannot be read: it is a folder");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("taken");
+    fs::write(&file, "mine").unwrap();
+    // Before any work: the samples would take hours.
+    for command in [&["trace", GALLERY, "--spp", "400000000"][..], &["analyse", GALLERY], &["compare", GALLERY]] {
+        let below = file.join("below");
+        for out in [&file, &below] {
+            let arguments = [command, &["-o", out.to_str().unwrap()]].concat();
+            refuses(&arguments, 1, "is not a folder");
+        }
+    }
+    assert_eq!(fs::read(&file).unwrap(), b"mine");
+}
+
+#[test]
+fn a_bare_mesh_is_lit_and_asked_by_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    house(folder.path(), "");
+    let mesh = folder.path().join("house.obj");
+    let mesh = mesh.to_str().unwrap();
+    let (analysis, stderr) = json(&["analyse", mesh]);
+    assert!(stderr.contains("a bare mesh: a light of 100 W"), "{stderr}");
+    assert_eq!(analysis["sensors"][0]["status"], "ok");
+    let traced = run(&["trace", mesh, "--spp", "16"]);
+    assert!(traced.status.success(), "{}", text(&traced.stderr));
+    assert!(text(&traced.stdout).contains("\ncell 0,"), "{}", text(&traced.stdout));
 }
 
 #[cfg(unix)]

@@ -47,7 +47,7 @@ fn read_binary(input: &Input, behind: usize) -> Result<RawMesh, SceneError> {
     let mut mesh = RawMesh::default();
     let material = mesh.material(&mut HashMap::new(), &input.stem());
     let mut stage = input.parse();
-    let body = input.bytes.get(HEADER..).unwrap_or_default();
+    let body = input.bytes.get(HEADER..input.bytes.len() - behind).unwrap_or_default();
     for (number, triangle) in body.chunks_exact(TRIANGLE).enumerate() {
         stage.done(HEADER + number * TRIANGLE)?;
         let floats = triangle.get(12..48).unwrap_or_default().chunks_exact(4);
@@ -154,6 +154,11 @@ mod tests {
         let from_text = read(TEXT.as_bytes()).unwrap();
         let from_binary = read(&binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.]])).unwrap();
         assert_eq!((&from_text.positions, &from_text.triangles), (&from_binary.positions, &from_binary.triangles));
+        let mut with_more = [binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.]]), vec![0; 60]].concat();
+        with_more[..5].fill(b'-');
+        let with_more = read(&with_more).unwrap();
+        assert_eq!(with_more.positions, from_binary.positions);
+        assert_eq!(with_more.warnings, ["60 bytes behind the last triangle left out"]);
         assert_eq!((from_text.materials[0].name.as_str(), from_binary.materials[0].name.as_str()), ("lid", "a"));
     }
 
