@@ -122,7 +122,7 @@ impl Skeleton {
     /// are the voxels'.
     ///
     /// Stages reported: those of [`thin`], `sections` (sections, radii, nearest nodes) and `cells`.
-    /// Time: about 60 ns a void voxel and 50 us an edge, on one thread.
+    /// Time of `sections` on one thread: that of [`Nearest::new`], and 15 us an edge in the gallery, 30 us in a real house.
     ///
     /// # Errors
     /// [`Cancelled`] when `cancel` was raised.
