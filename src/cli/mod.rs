@@ -1,4 +1,4 @@
-//! The program: what was typed ([`args`]) becomes what will run ([`plan`]), and runs ([`run`]).
+//! The program: what was typed (`args`) becomes what will run (`plan`), and runs (`run`).
 //!
 //! Exit codes: 0 done, 1 bad input or a failed job, 2 wrong usage, 130 interrupted. Tables and JSON go to stdout, bars and
 //! warnings to stderr.

@@ -5,6 +5,10 @@
 //! `B = L0 / (pi d_all^2)`, arriving from `n_e`. Where the probe sees the light itself, `d_all` is the distance to it.
 //! (Chaussard, Biri, Couprie.) It leaves out what walls absorb, hence an upper estimate, and also what many
 //! reflections add, hence not a bound in bright rooms.
+//!
+//! Limits: a light is read as a point that shines evenly all around (a quad: into the half space before it), so that under a
+//! quad, which is up to four times as strong along its normal, the value is too low. Glazing weakens light where the light
+//! itself is seen, not round a corner.
 
 use super::{Arrival, AtProbe, Lit, add_lights, inverse_square};
 use crate::job::{Cancel, Cancelled, Progress};

@@ -7,6 +7,9 @@
 //!
 //! `r` is read as the opening, the half-width of the largest ball that covers the node: the node's own distance to matter
 //! wavers with every voxel of a wall, and each wavering would take its share.
+//!
+//! Limits: a node on the face of a door in a wall of a single voxel is covered by the balls of both rooms, so that such a
+//! door takes no share. Lights are read as points that shine evenly all around; glazing takes no share.
 
 use super::paths::PathTree;
 use super::{Arrival, AtProbe, Lit, add_lights, inverse_square};
