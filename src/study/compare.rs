@@ -49,6 +49,26 @@ pub struct Entry {
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised.
+///
+/// ```
+/// use lightvein::job::{Cancel, Quiet};
+/// use lightvein::model::Model;
+/// use lightvein::rays::Rays;
+/// use lightvein::scene::{Method, Scene};
+/// use lightvein::study::compare::{Contestant, compare};
+/// use std::{path::Path, sync::Arc};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/two_rooms/two_rooms.toml");
+/// let scene = Scene::load(&path, &Quiet, &Cancel::new())?;
+/// let model = Model::build(&scene, Arc::new(Rays::new(&scene)), 0.1, 1 << 30, &Quiet, &Cancel::new())?;
+/// let methods = [Method::Backward, Method::Forward].map(Contestant::built_in);
+/// for entry in compare(&scene, &model, &methods, &scene.reference, &Default::default(), &Quiet, &Cancel::new())? {
+///     println!("{}: off by a factor of {:?}", entry.name, entry.errors.rms_factor);
+/// }
+/// # Ok(())
+/// # }
+/// ```
 pub fn compare(
     scene: &Scene,
     model: &Model,

@@ -50,6 +50,25 @@ pub struct Traced {
 ///
 /// # Errors
 /// [`Cancelled`] when `cancel` was raised; it is looked at every 128 samples.
+///
+/// ```
+/// use glam::Vec3;
+/// use lightvein::job::{Cancel, Cancelled, Quiet};
+/// use lightvein::light::{Settings, Sources};
+/// use lightvein::rays::Rays;
+/// use lightvein::scene::{Light, Scene, Sensor};
+/// use lightvein::trace::trace;
+///
+/// // 100 W in empty space, 2 m above a sensor that looks up.
+/// let light = Light::Point { position_m: Vec3::Z * 2.0, flux_w: 100.0 };
+/// let sensor = Sensor { id: "a".to_owned(), position_m: Vec3::ZERO, normal: Some(Vec3::Z) };
+/// let scene = Scene { lights: vec![light], sensors: vec![sensor], ..Scene::default() };
+/// let settings = Settings { samples: 16, ..Settings::default() };
+/// let traced = trace(&scene, &Rays::new(&scene), &Sources::of(&scene), &settings, &Quiet, &Cancel::new())?;
+/// let inverse_square = 100.0 / (4.0 * std::f64::consts::PI * 4.0);
+/// assert!((traced.field.readings[0].value_w_m2 / inverse_square - 1.0).abs() < 1e-4);
+/// # Ok::<(), Cancelled>(())
+/// ```
 pub fn trace(
     scene: &Scene,
     rays: &Rays,
