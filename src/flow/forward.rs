@@ -6,10 +6,10 @@
 //! probe to node + path + node to light. A narrow place takes its share for good: nothing comes back by reflection.
 //!
 //! `r` is read as the opening, the half-width of the largest ball that covers the node: the node's own distance to matter
-//! wavers with every voxel of a wall, and each wavering would take its share.
+//! wavers with every voxel of a wall, and each wavering would take its share. The edge that leads to the node counts with
+//! it: through a wall of a single voxel the edge alone is in the door.
 //!
-//! Limits: a node on the face of a door in a wall of a single voxel is covered by the balls of both rooms, so that such a
-//! door takes no share. Lights are read as points that shine evenly all around; glazing takes no share.
+//! Limits: lights are read as points that shine evenly all around; glazing takes no share.
 
 use super::paths::PathTree;
 use super::{Arrival, AtProbe, Lit, add_lights, inverse_square};
@@ -67,8 +67,10 @@ fn shares(skeleton: &Skeleton, tree: &PathTree) -> Vec<f64> {
         share[node.index()] = if parent == node {
             1.0
         } else {
-            let [ball, parent_ball] = [node, parent].map(|at| f64::from(skeleton.graph[at].opening_voxels));
-            share[parent.index()] * (ball / parent_ball).powi(2).min(1.0)
+            let [ball, parent_ball] = [node, parent].map(|at| skeleton.graph[at].opening_voxels);
+            let way = skeleton.graph.find_edge(parent, node).map_or(ball, |edge| skeleton.graph[edge].opening_voxels);
+            let narrowing = f64::from(ball.min(way)) / f64::from(parent_ball);
+            share[parent.index()] * narrowing.powi(2).min(1.0)
         };
     }
     share
@@ -79,6 +81,7 @@ mod tests {
     use super::*;
     use crate::flow::inverse_square;
     use crate::flow::tests::{FLUX_W, close, field, lamp, modelled, room, sensor, two_rooms, veins};
+    use crate::voxel::test_scenes::boxed;
     use glam::Vec3;
 
     #[test]
@@ -89,6 +92,26 @@ mod tests {
         assert_eq!(shares(&skeleton, &tree), [1.0, 1.0, 0.25, 0.25, 0.25 / 64.0]);
         let apart = veins(&[4, 4], &[]);
         assert_eq!(shares(&apart, &PathTree::from(&apart, NodeIndex::new(0))), [1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_door_in_a_wall_without_thickness_takes_its_share() {
+        // Two rooms of 3 m; the wall between them is a sheet with a door of 1 x 1 m in its middle.
+        let mut triangles = boxed(Vec3::ZERO, Vec3::new(6.0, 3.0, 3.0));
+        let sheet = |low: [f32; 2], high: [f32; 2]| {
+            let at = |y: f32, z: f32| Vec3::new(3.0, y, z);
+            let [a, b, c, d] = [at(low[0], low[1]), at(high[0], low[1]), at(high[0], high[1]), at(low[0], high[1])];
+            [[a, b, c], [a, c, d]]
+        };
+        let parts =
+            [([0.0, 0.0], [3.0, 1.0]), ([0.0, 2.0], [3.0, 3.0]), ([0.0, 1.0], [1.0, 2.0]), ([2.0, 1.0], [3.0, 2.0])];
+        triangles.extend(parts.into_iter().flat_map(|(low, high)| sheet(low, high)));
+        let model = modelled(&triangles, vec![lamp(Vec3::new(1.0, 1.4, 1.5), FLUX_W)], Vec::new());
+        let skeleton = &model.1.skeleton;
+        let tree = PathTree::from(skeleton, model.1.shining[0].place.unwrap());
+        let farthest = *tree.order.last().unwrap();
+        let share = shares(skeleton, &tree)[farthest.index()];
+        assert!((0.05..0.16).contains(&share), "a ninth, to the voxel: {share}");
     }
 
     #[test]

@@ -75,7 +75,7 @@ pub fn veins(openings: &[u16], edges: &[(u32, u32, f32)]) -> Skeleton {
     let mut graph = UnGraph::default();
     openings.iter().for_each(|opening| _ = graph.add_node(node(opening)));
     for &(a, b, length_m) in edges {
-        graph.add_edge(a.into(), b.into(), Edge { length_m, section_m2: 1.0, neck: None });
+        graph.add_edge(a.into(), b.into(), Edge { length_m, section_m2: 1.0, opening_voxels: u16::MAX, neck: None });
     }
     let (_, model) = modelled(&boxed(Vec3::ZERO, Vec3::ONE), Vec::new(), Vec::new());
     Skeleton { graph, ..model.skeleton }

@@ -62,6 +62,9 @@ pub struct Edge {
     pub length_m: f32,
     /// True area of the void across its middle, square to the curve there, as far as it is in sight, m2.
     pub section_m2: f32,
+    /// Half-width of the largest chessboard ball that covers it, voxels; less than at both its ends where it crosses a wall of
+    /// a single voxel.
+    pub opening_voxels: u16,
     /// The neck it crosses.
     pub neck: Option<u32>,
 }
@@ -188,10 +191,12 @@ impl Skeleton {
             });
         }
         for (edge, [a, b]) in curve.edges.iter().enumerate() {
-            let step = (corners[*b as usize] - corners[*a as usize]).as_vec3();
+            let [from, to] = [*a, *b].map(|end| corners[end as usize]);
+            let step = (to - from).as_vec3();
             let weight = Edge {
                 length_m: lattice.voxel_m * step.dot(directions[edge]).abs().max(SHORTEST_STEP),
                 section_m2: sections_m2[edge],
+                opening_voxels: curve.opening.at_edge(from.min(to), step.abs().max_position()),
                 neck: neck_of[edge],
             };
             graph.add_edge(NodeIndex::new(*a as usize), NodeIndex::new(*b as usize), weight);
