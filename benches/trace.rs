@@ -1,5 +1,5 @@
 //! Path-traced samples a second on the gallery, and the time that each of its sensors needs for a standard error of 1%.
-//! Run with `cargo bench --bench trace`; `benches/trace_peer.py` runs Mitsuba on the same sensors beside it.
+//! Run with `cargo bench --bench trace`; `benches/peers/trace_peer.py` runs Mitsuba on the same sensors beside it.
 
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::{Settings, Sources};

@@ -4,8 +4,9 @@ use super::cells::{self, Widths};
 use super::links::Links;
 use super::matter::Matter;
 use super::nearest::Nearest;
+use super::necks::{self, Neck};
 use super::sections::{self, Section};
-use super::{curve::Curve, necks, thin};
+use super::{curve::Curve, thin};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::rays::Rays;
 use crate::space::{Lattice, VoxelIndex};
@@ -77,19 +78,6 @@ pub struct Cell {
     pub volume_m3: f32,
     /// Its node with the greatest distance to matter.
     pub centre: NodeIndex,
-}
-
-/// A doorway: the narrowest section between two cells.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Neck {
-    /// The two cells it joins, the lower number first.
-    pub cells: [u32; 2],
-    /// The middle of its section, metres.
-    pub position_m: Vec3,
-    /// Unit normal, from the first cell to the second.
-    pub normal: Vec3,
-    /// Its area, m2.
-    pub area_m2: f32,
 }
 
 /// What must not change when voxels are made smaller.

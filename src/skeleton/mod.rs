@@ -23,7 +23,8 @@ pub mod tie;
 pub mod topology;
 mod validate;
 
-pub use graph::{Cell, Edge, Neck, Node, Shape, Skeleton};
+pub use graph::{Cell, Edge, Node, Shape, Skeleton};
+pub use necks::Neck;
 
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::voxel::bits::BitGrid;

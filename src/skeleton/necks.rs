@@ -5,12 +5,24 @@
 //! until its area is least, because the curve seldom runs square through a door.
 
 use super::cells::Widths;
-use super::graph::Neck;
 use super::matter::Matter;
 use super::sections::Section;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+
+/// A doorway: the narrowest section between two cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Neck {
+    /// The two cells it joins, the lower number first.
+    pub cells: [u32; 2],
+    /// The middle of its section, metres.
+    pub position_m: Vec3,
+    /// Unit normal, from the first cell to the second.
+    pub normal: Vec3,
+    /// Its area, m2.
+    pub area_m2: f32,
+}
 
 /// Rays across a neck: a 0.9 x 2.1 m door comes out to 1%.
 const RAYS: usize = 64;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times the path tracer and Mitsuba 3 on the gallery in one run: benches/trace_peer.py PATH/mitsuba_irradiance.py
+"""Times the path tracer and Mitsuba 3 on the gallery in one run: benches/peers/trace_peer.py PATH/mitsuba_irradiance.py
 
 Both take 65,536 samples at each of the seven sensors, any number of bounces. Prints sensor-samples a second of both, and the
 seconds that each sensor needs for a standard error of 1%. Mitsuba's own roulette starts at its default depth (8) and,
@@ -14,7 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scenes"))
 from mesh_files import SceneFile  # noqa: E402
 from reference import lights  # noqa: E402
