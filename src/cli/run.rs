@@ -226,7 +226,9 @@ fn traced_reference(
     cancel: &Cancel,
 ) -> Result<Vec<Option<Reference>>> {
     stages.begin("reference", 0);
-    let field = trace::trace(scene, &model.rays, &model.sources, settings, stages, cancel)?.field;
+    // Its own random numbers: `trace` as a method must not be held against itself.
+    let settings = Settings { seed: settings.seed.wrapping_add(1), ..*settings };
+    let field = trace::trace(scene, &model.rays, &model.sources, &settings, stages, cancel)?.field;
     stages.end();
     let row = |reading: &crate::light::Reading| Reference {
         irradiance_w_m2: reading.value_w_m2,
