@@ -37,9 +37,10 @@ impl Border {
     pub fn update(&mut self, layout: &Layout, cells: &[Cells], candidates: &[u32]) -> Vec<Edge> {
         let begins = slabs(layout, candidates);
         let plane = layout.stride[2];
-        // The border of a brick builds on that of the bricks below it, so a slab begins two planes early, on a copy.
+        // The border of a brick builds on that of the bricks below it: on that of the plane below for one lattice layer,
+        // and there on nothing lower. So a slab begins a plane early, on a copy.
         let copies: Vec<Vec<Cells>> =
-            begins.iter().map(|begin| self.cells[begin.saturating_sub(2 * plane)..*begin].to_vec()).collect();
+            begins.iter().map(|begin| self.cells[begin.saturating_sub(plane)..*begin].to_vec()).collect();
         let others = cut(&mut self.born, &begins).into_iter().zip(cut(&mut self.near, &begins));
         let own = cut(&mut self.cells, &begins).into_iter().zip(others);
         let mut parts: Vec<_> = own.zip(copies).zip(&begins).collect();
