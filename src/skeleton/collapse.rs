@@ -25,6 +25,7 @@ use crate::voxel::brick::{self, FIRST, LAST};
 use crate::voxel::levels::Levels;
 use border::Border;
 use glam::IVec3;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Layers that an edge must outlive its birth by, at least: a curve of a few cells in a void too small to say otherwise
@@ -57,8 +58,8 @@ pub fn collapse(
     for (brick, bit) in anchors.iter().filter_map(|corner| layout.place(*corner)) {
         kept[brick][0] |= 1 << bit;
     }
-    let all = (0..cells.len()).filter(|brick| cells[*brick][0] != 0);
-    let mut candidates: Vec<u32> = all.map(|brick| brick as u32).collect();
+    let all = cells.par_iter().enumerate().filter(|(_, cells)| cells[0] != 0);
+    let mut candidates: Vec<u32> = all.map(|(brick, _)| brick as u32).collect();
 
     // For each layer the edges to be kept for good if they still exist when it begins.
     let mut trials: BTreeMap<u32, Vec<(u32, usize, u64)>> = BTreeMap::new();
@@ -67,13 +68,19 @@ pub fn collapse(
         for (brick, axis, bit) in trials.remove(&now).unwrap_or_default() {
             kept[brick as usize][1 + axis] |= cells[brick as usize][1 << axis] & bit;
         }
-        for (brick, axis, bit) in border.update(&layout, cells, &candidates) {
+        let news = border.update(&layout, cells, &candidates, |(brick, axis, bit)| {
             let corner = layout.corner(brick as usize, bit);
             let life = opening.at_edge(corner, axis) - distance.at_edge(corner, axis);
             let until = (u32::from(life) + 2 * now).max(now + LEAST_LIFE);
-            trials.entry(until + 1).or_default().push((brick, axis, 1 << bit));
+            (until + 1, (brick, axis, 1 << bit))
+        });
+        let mut active = Vec::with_capacity(candidates.len());
+        for news in news {
+            active.extend(news.active);
+            for (layer, edge) in news.births {
+                trials.entry(layer).or_default().push(edge);
+            }
         }
-        let active = border.active(&layout, &candidates);
         let pass = peel::Pass { layout: &layout, border: border.cells(), near: border.near(), kept: &kept };
         pass.run(cells, &mut changed, &active);
         candidates = spread(&layout, &mut changed, &active);
@@ -117,26 +124,40 @@ fn cut<'a, T>(mut array: &'a mut [T], begins: &[usize]) -> Vec<&'a mut [T]> {
 
 /// The bricks that what was taken in and below these may concern in the next layer. Clears what it reads.
 fn spread(layout: &Layout, changed: &mut [u64], bricks: &[u32]) -> Vec<u32> {
-    let stride = layout.stride;
-    let mut marks = vec![0_u64; layout.count().div_ceil(64)];
-    for brick in bricks.iter().map(|brick| *brick as usize) {
-        let changed = std::mem::take(&mut changed[brick]);
-        if changed == 0 {
-            continue;
+    let begins = slabs(layout, bricks);
+    let parts: Vec<_> = cut(changed, &begins).into_iter().zip(&begins).collect();
+    let marks = parts.into_par_iter().map(|(changed, begin)| {
+        let mut marks = vec![0_u64; layout.count().div_ceil(64)];
+        for brick in part(bricks, *begin..begin + changed.len()).iter().map(|brick| *brick as usize) {
+            mark(layout, std::mem::take(&mut changed[brick - begin]), brick, &mut marks);
         }
-        // What is taken at a place concerns pairs from one place below it to two above, along each axis.
-        for (dz, z) in TOUCHED[2].iter().enumerate().filter(|(_, z)| changed & **z != 0) {
-            for (dy, y) in TOUCHED[1].iter().enumerate().filter(|(_, y)| changed & z & **y != 0) {
-                for (dx, _) in TOUCHED[0].iter().enumerate().filter(|(_, x)| changed & z & y & **x != 0) {
-                    let beside = brick + dx + dy * stride[1] + dz * stride[2] - layout.guard;
-                    marks[beside / 64] |= 1 << (beside % 64);
-                }
+        marks
+    });
+    let marks: Vec<Vec<u64>> = marks.collect();
+    let mut concerned = Vec::with_capacity(2 * bricks.len());
+    for word in 0..layout.count().div_ceil(64) {
+        let bits = marks.iter().fold(0, |bits, marks| bits | marks[word]);
+        concerned.extend(brick::ones(bits).map(|bit| 64 * word as u32 + bit));
+    }
+    concerned.retain(|brick| layout.holds(*brick as usize));
+    concerned
+}
+
+/// Marks the bricks that what was taken in one may concern. What is taken at a place concerns pairs from one place below it
+/// to two above, along each axis.
+fn mark(layout: &Layout, changed: u64, brick: usize, marks: &mut [u64]) {
+    if changed == 0 {
+        return;
+    }
+    let stride = layout.stride;
+    for (dz, z) in TOUCHED[2].iter().enumerate().filter(|(_, z)| changed & **z != 0) {
+        for (dy, y) in TOUCHED[1].iter().enumerate().filter(|(_, y)| changed & z & **y != 0) {
+            for (dx, _) in TOUCHED[0].iter().enumerate().filter(|(_, x)| changed & z & y & **x != 0) {
+                let beside = brick + dx + dy * stride[1] + dz * stride[2] - layout.guard;
+                marks[beside / 64] |= 1 << (beside % 64);
             }
         }
     }
-    let marked = marks.iter().enumerate();
-    let bricks = marked.flat_map(|(word, bits)| brick::ones(*bits).map(move |bit| 64 * word as u32 + bit));
-    bricks.filter(|brick| layout.holds(*brick as usize)).collect()
 }
 
 /// For each axis the places of a brick where a change concerns the brick below, itself, and the brick above.

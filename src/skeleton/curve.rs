@@ -1,9 +1,10 @@
 //! What is left of a void once it is thinned: lattice points, and the steps of one voxel between them.
 
-use super::complex::Complex;
+use super::complex::{Cells, Complex};
 use crate::voxel::brick;
 use crate::voxel::levels::Levels;
 use glam::IVec3;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// A void's centre lines: a graph on the lattice of voxel corners.
@@ -43,10 +44,11 @@ impl Curve {
     /// The points and edges of a complex that has nothing else; `anchors` are the points that were held.
     pub fn new(complex: &Complex, anchors: &[IVec3], distance: Levels, opening: Levels) -> Self {
         let layout = complex.layout();
-        let bricks = || complex.cells().iter().enumerate().filter(|(_, cells)| cells[0] != 0);
+        let all = complex.cells().par_iter().enumerate();
+        let bricks: Vec<(usize, &Cells)> = all.filter(|(_, cells)| cells[0] != 0).collect();
         let points =
-            bricks().flat_map(|(brick, cells)| brick::ones(cells[0]).map(move |bit| layout.corner(brick, bit)));
-        let steps = bricks().flat_map(|(brick, cells)| {
+            bricks.iter().flat_map(|&(brick, cells)| brick::ones(cells[0]).map(move |bit| layout.corner(brick, bit)));
+        let steps = bricks.iter().flat_map(|&(brick, cells)| {
             (0..3).flat_map(move |axis| {
                 let starts = brick::ones(cells[1 << axis]).map(move |bit| layout.corner(brick, bit));
                 starts.map(move |corner| [corner, corner + IVec3::AXES[axis]])

@@ -20,7 +20,15 @@ pub struct Border {
 }
 
 /// An edge: its brick, its axis and its bit.
-type Edge = (u32, usize, u32);
+pub type Edge = (u32, usize, u32);
+
+/// What finding the border anew brought to light, of one slab.
+pub struct News<T> {
+    /// What the caller made of the edges that have lost their last face since the last call.
+    pub births: Vec<T>,
+    /// Those of the candidates that have any border in or below them: nothing can be taken elsewhere.
+    pub active: Vec<u32>,
+}
 
 impl Border {
     /// None so far.
@@ -33,17 +41,24 @@ impl Border {
         &self.cells
     }
 
-    /// Finds the border in the candidates anew; gives their edges that have lost their last face since the last call.
-    pub fn update(&mut self, layout: &Layout, cells: &[Cells], candidates: &[u32]) -> Vec<Edge> {
+    /// Finds the border in the candidates anew; gives what is new, slab after slab, with `birth` of each edge born.
+    pub fn update<T: Send>(
+        &mut self,
+        layout: &Layout,
+        cells: &[Cells],
+        candidates: &[u32],
+        birth: impl Fn(Edge) -> T + Sync,
+    ) -> Vec<News<T>> {
         let begins = slabs(layout, candidates);
         let plane = layout.stride[2];
-        // The border of a brick builds on that of the bricks below it, so a slab begins two planes early, on a copy.
+        // The border of a brick builds on that of the bricks below it: on that of the plane below for one lattice layer,
+        // and there on nothing lower. So a slab begins a plane early, on a copy.
         let copies: Vec<Vec<Cells>> =
-            begins.iter().map(|begin| self.cells[begin.saturating_sub(2 * plane)..*begin].to_vec()).collect();
+            begins.iter().map(|begin| self.cells[begin.saturating_sub(plane)..*begin].to_vec()).collect();
         let others = cut(&mut self.born, &begins).into_iter().zip(cut(&mut self.near, &begins));
         let own = cut(&mut self.cells, &begins).into_iter().zip(others);
         let mut parts: Vec<_> = own.zip(copies).zip(&begins).collect();
-        let births = parts.par_iter_mut().map(|(((own, (born, near)), copy), begin)| {
+        let news = parts.par_iter_mut().map(|(((own, (born, near)), copy), begin)| {
             let (begin, early) = (**begin, **begin - copy.len());
             for brick in part(candidates, early..begin).iter().map(|brick| *brick as usize) {
                 let bare = bare_edges(cells, brick, layout.stride);
@@ -52,42 +67,37 @@ impl Border {
                 let found = border_of(cells, brick, layout.stride, [lower(0), lower(1), lower(2)], bare);
                 copy[brick - early] = found;
             }
-            let mut births = Vec::new();
+            let mut news = News { births: Vec::new(), active: Vec::new() };
             for brick in part(candidates, begin..begin + own.len()).iter().map(|brick| *brick as usize) {
                 let bare = bare_edges(cells, brick, layout.stride);
+                let below = |axis: usize| brick - layout.stride[axis];
                 let lower = |axis: usize| {
-                    let below = brick - layout.stride[axis];
+                    let below = below(axis);
                     if below >= begin { &own[below - begin] } else { &copy[below - early] }
                 };
                 let found = border_of(cells, brick, layout.stride, [lower(0), lower(1), lower(2)], bare);
                 own[brick - begin] = found;
-                near[brick - begin] = if found == [0; 8] { 0 } else { HERE };
+                let in_lower = |axis: usize| match below(axis) {
+                    below if below >= begin => near[below - begin] & HERE != 0,
+                    below => !is_empty(&copy[below - early]),
+                };
+                let here = if is_empty(&found) { 0 } else { HERE };
+                let around = here | u8::from(in_lower(0)) | u8::from(in_lower(1)) << 1 | u8::from(in_lower(2)) << 2;
+                near[brick - begin] = around;
+                if around != 0 {
+                    news.active.push(brick as u32);
+                }
                 if bare[0] | bare[1] | bare[2] == 0 {
                     continue;
                 }
                 for (axis, born) in born[brick - begin].iter_mut().enumerate() {
-                    births.extend(brick::ones(bare[axis] & !*born).map(|bit| (brick as u32, axis, bit)));
+                    news.births.extend(brick::ones(bare[axis] & !*born).map(|bit| birth((brick as u32, axis, bit))));
                     *born |= bare[axis];
                 }
             }
-            births
+            news
         });
-        births.collect::<Vec<_>>().concat()
-    }
-
-    /// Those of the candidates that have any border in or below them: nothing can be taken elsewhere.
-    pub fn active(&mut self, layout: &Layout, candidates: &[u32]) -> Vec<u32> {
-        let mut active = Vec::with_capacity(candidates.len());
-        for brick in candidates {
-            let at = *brick as usize;
-            let below = |axis: usize| (self.near[at - layout.stride[axis]] & HERE != 0) as u8;
-            let near = self.near[at] & HERE | below(0) | below(1) << 1 | below(2) << 2;
-            self.near[at] = near;
-            if near != 0 {
-                active.push(*brick);
-            }
-        }
-        active
+        news.collect()
     }
 
     /// For each active brick whether there is border in it ([`HERE`]), and in the bricks below it along x, y, z (bits 0,
@@ -99,6 +109,12 @@ impl Border {
 
 /// There is border in the brick itself.
 pub const HERE: u8 = 8;
+
+/// Whether a brick has no cells.
+#[inline(always)]
+fn is_empty(cells: &Cells) -> bool {
+    cells.iter().fold(0, |any, word| any | word) == 0
+}
 
 /// The border in a brick; `lower` is that in the bricks below it along x, y, z, `bare` its edges without a face.
 #[inline(always)]
@@ -129,7 +145,7 @@ fn bare_edges(cells: &[Cells], brick: usize, stride: [usize; 3]) -> [u64; 3] {
     let here = &cells[brick];
     // Most bricks have no edge without a face in them alone; then those beside need no look.
     let alone = [here[1] & !(here[3] | here[5]), here[2] & !(here[6] | here[3]), here[4] & !(here[5] | here[6])];
-    if alone == [0; 3] {
+    if alone[0] | alone[1] | alone[2] == 0 {
         return alone;
     }
     let (x, y, z) = (&cells[brick - stride[0]], &cells[brick - stride[1]], &cells[brick - stride[2]]);

@@ -70,9 +70,10 @@ impl Below {
     }
 }
 
-/// Planes of bricks below a slab that its first plane depends on through the four directions along x and y: two for each,
-/// since edges there build on faces a plane lower, and points on edges.
-const DEPTH: usize = 8;
+/// Planes of bricks below a slab that its first plane depends on through the four directions along x and y. In each of
+/// these, edges and points build on faces at most one lattice layer lower, and nothing on what is higher: four layers,
+/// which is one brick.
+const DEPTH: usize = 1;
 
 impl Pass<'_> {
     /// Takes the free pairs of all six directions in some bricks, given in ascending order; adds to `changed` where.

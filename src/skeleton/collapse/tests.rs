@@ -148,3 +148,33 @@ fn it_equals_the_definition_cell_by_cell() {
         }
     }
 }
+
+#[test]
+fn slabs_of_any_number_leave_the_same() {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 33) % 1000
+    };
+    let never = Cancel::new();
+    for solid in [3, 15, 80] {
+        let size = [75, 75, 90];
+        let bytes: Vec<u8> = (0..size.iter().product()).map(|_| u8::from(random() >= solid)).collect();
+        let void = BitGrid::from_bytes(size, &bytes);
+        let board = Chessboard::new(&void, &never).unwrap();
+        let opening = opening(&void, &board, &never).unwrap();
+        let anchors = anchors(&void, &board);
+        let left = |threads: usize| {
+            let mut complex = Complex::closure(&void);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| collapse(&mut complex, &board.distance, &opening, &anchors, &Quiet, &never)).unwrap();
+            complex
+        };
+        let one = left(1);
+        for threads in [2, 5, 12] {
+            assert!(one == left(threads), "{threads} threads, {solid} in 1000 solid");
+        }
+    }
+}
