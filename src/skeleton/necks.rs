@@ -27,11 +27,11 @@ pub struct Neck {
 /// Rays across a neck: a 0.9 x 2.1 m door comes out to 1%.
 const RAYS: usize = 64;
 
-/// Rays while its plane is turned.
-const TURN_RAYS: usize = 24;
+/// Rays while its plane is turned; the fan's noise must stay under the gain that is looked for.
+const TURN_RAYS: usize = 64;
 
-/// Turns that are tried, radians, the largest first; each to four sides.
-const TURNS_RAD: [f32; 3] = [0.35, 0.17, 0.09];
+/// Turns that are tried one after the other, radians; each to eight sides.
+const TURNS_RAD: [f32; 5] = [0.35, 0.35, 0.17, 0.17, 0.09];
 
 /// A turn must make the section less than this share of what it was; less is the fan's own noise.
 const TURN_GAIN: f32 = 0.99;
@@ -127,7 +127,7 @@ fn turned(matter: &Matter, centre_m: Vec3, mut normal: Vec3) -> Vec3 {
     let mut least_m2 = area(normal);
     for turn in TURNS_RAD {
         let (u, v) = normal.any_orthonormal_pair();
-        for side in [u, -u, v, -v] {
+        for side in [u, -u, v, -v, u + v, u - v, v - u, -u - v].map(Vec3::normalize) {
             let turned = (normal + side * turn.tan()).normalize();
             let turned_m2 = area(turned);
             if turned_m2 < TURN_GAIN * least_m2 {
