@@ -38,7 +38,7 @@ mod tests {
         let sensor = |id: &str| Sensor { id: id.into(), position_m: Vec3::ZERO, normal: None };
         let flux_w_m2 = DVec3::new(0.5, -0.25, 0.0);
         let ok = Reading { value_w_m2: 1.5, flux_w_m2, error_w_m2: Some(0.01), status: Status::Ok };
-        let field = Field { readings: vec![ok, Reading::none(Status::InSolid)], warnings: Vec::new() };
+        let field = Field { readings: vec![ok, Reading::none(Status::InSolid)], warnings: Vec::new(), shares: None };
         let mut out = Vec::new();
         write_reference(&mut out, "by trace\nseed 1", &[sensor("a, b"), sensor("c")], &field)
             .expect("a vector takes all");

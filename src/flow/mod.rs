@@ -6,8 +6,10 @@
 //! skeleton") share is [`add_lights`]: a shortest-path tree for each light, an [`Arrival`] for each probe, and their sum.
 
 pub mod backward;
+pub mod direct;
 pub mod forward;
 pub mod paths;
+pub mod sequence;
 
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Status};
@@ -28,6 +30,33 @@ pub fn estimator(method: Method) -> Option<&'static Estimator<'static>> {
         Method::Backward => Some(&backward::estimate),
         Method::Forward => Some(&forward::estimate),
         Method::Trace => None,
+    }
+}
+
+/// One quality of a method.
+pub struct Rung {
+    /// The method it is of.
+    pub method: Method,
+    /// What is set, for tables and charts: `coarse`, `2 bounces`; empty for a method that has one quality.
+    pub quality: String,
+    /// The estimator at that quality.
+    pub estimate: Box<Estimator<'static>>,
+}
+
+impl Rung {
+    /// Method and quality: `network coarse`.
+    pub fn label(&self) -> String {
+        format!("{} {}", self.method, self.quality).trim_end().to_owned()
+    }
+}
+
+/// The qualities of a method, the cheapest first; none for the path tracer, which is no estimator.
+pub fn ladder(method: Method) -> Vec<Rung> {
+    let one = |estimate: Box<Estimator<'static>>| vec![Rung { method, quality: String::new(), estimate }];
+    match method {
+        Method::Backward => one(Box::new(backward::estimate)),
+        Method::Forward => one(Box::new(forward::estimate)),
+        Method::Trace => Vec::new(),
     }
 }
 
@@ -102,7 +131,7 @@ pub fn add_lights(
     if refused > 0 {
         warnings.push(format!("{refused} arrivals were negative or not finite and count as nothing"));
     }
-    Ok(Field { readings, warnings })
+    Ok(Field { readings, warnings, shares: None })
 }
 
 /// Adds one light to one reading; false when its arrival was refused.

@@ -58,11 +58,13 @@ pub struct Settings {
     pub samples: u32,
     /// Most reflections a path may have; `None` for no bound, where Russian roulette ends it.
     pub max_bounces: Option<u32>,
+    /// Whether the part of each emitter is asked for too ([`Field::shares`]).
+    pub shares: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { seed: 0, samples: 1024, max_bounces: None }
+        Self { seed: 0, samples: 1024, max_bounces: None, shares: false }
     }
 }
 
@@ -127,6 +129,25 @@ pub struct Field {
     pub readings: Vec<Reading>,
     /// What a reader of the field should know, a sentence each.
     pub warnings: Vec<String>,
+    /// The part of each emitter in each reading, where [`Settings::shares`] asked for it and the method can tell.
+    pub shares: Option<Shares>,
+}
+
+/// What each emitter gives to each reading.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Shares {
+    /// How many emitters there are: the length of a row.
+    pub emitters: usize,
+    /// A row a reading: what each emitter of [`Sources::emitters`] adds to its value, W/m2.
+    pub values_w_m2: Vec<f64>,
+}
+
+impl Shares {
+    /// The row of a reading; empty for a number beyond the last.
+    pub fn of(&self, reading: usize) -> &[f64] {
+        let first = reading * self.emitters;
+        self.values_w_m2.get(first..first + self.emitters).unwrap_or_default()
+    }
 }
 
 impl Light {

@@ -28,12 +28,14 @@ pub struct LightSample {
 }
 
 /// The emitters of a scene, ready to be drawn from.
+#[derive(Debug, Clone)]
 pub struct Sampler {
     lamps: Vec<Lamp>,
     /// How far the ends of shadow rays are lifted off the lights, metres.
     lift_m: f64,
 }
 
+#[derive(Debug, Clone)]
 struct Lamp {
     flux_w: f64,
     /// A ball around it, metres.
@@ -42,6 +44,7 @@ struct Lamp {
     body: Body,
 }
 
+#[derive(Debug, Clone)]
 enum Body {
     Point,
     Sphere { radius_m: f64 },

@@ -6,9 +6,10 @@
 pub mod bare;
 pub mod choose;
 pub mod faces;
+pub mod walls;
 
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Aim, Emitter, Shape, Sources, Status};
+use crate::light::{Aim, Emitter, Sampler, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
@@ -19,6 +20,7 @@ use glam::Vec3;
 use petgraph::graph::NodeIndex;
 use rayon::prelude::*;
 use std::sync::Arc;
+use walls::Walls;
 
 /// What was modelled of a scene.
 #[derive(Debug)]
@@ -27,6 +29,10 @@ pub struct Model {
     pub rays: Arc<Rays>,
     /// What shines.
     pub sources: Sources,
+    /// How to look towards what shines.
+    pub sampler: Sampler,
+    /// What light falls on.
+    pub walls: Walls,
     /// Where matter and void are.
     pub voxels: Voxels,
     /// Where the void runs.
@@ -97,12 +103,14 @@ impl Model {
         let skeleton = Skeleton::build(&voxels, &rays, progress, cancel)?;
         progress.end();
 
-        Ok(Self::of(rays, sources, voxels, skeleton))
+        Ok(Self::of(scene, rays, sources, voxels, skeleton))
     }
 
-    /// The model that these parts of one scene make.
-    pub fn of(rays: Arc<Rays>, sources: Sources, voxels: Voxels, skeleton: Skeleton) -> Self {
-        let mut model = Self { rays, sources, voxels, skeleton, shining: Vec::new() };
+    /// The model of a scene that these parts of it make.
+    pub fn of(scene: &Scene, rays: Arc<Rays>, sources: Sources, voxels: Voxels, skeleton: Skeleton) -> Self {
+        let sampler = Sampler::new(scene, &sources, rays.epsilon_m());
+        let walls = Walls::of(scene);
+        let mut model = Self { rays, sources, sampler, walls, voxels, skeleton, shining: Vec::new() };
         model.shining = model.places_of_lights();
         model
     }
@@ -110,6 +118,7 @@ impl Model {
     /// The model of a scene that had no light and now has some, standing in the same void.
     fn lit(mut self, scene: &Scene) -> Self {
         self.sources = Sources::of(scene);
+        self.sampler = Sampler::new(scene, &self.sources, self.rays.epsilon_m());
         self.shining = self.places_of_lights();
         self
     }

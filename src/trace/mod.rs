@@ -112,7 +112,7 @@ pub fn trace(
     let readings = sums.iter().zip(&standings).map(|(sums, standing)| sums.reading(*standing)).collect();
     let top_share: Vec<f64> = sums.iter().map(Sums::top_share).collect();
     let warnings = warnings(scene, &standings, &top_share);
-    Ok(Traced { field: Field { readings, warnings }, top_share })
+    Ok(Traced { field: Field { readings, warnings, shares: None }, top_share })
 }
 
 /// What is known of a number of samples.
