@@ -65,7 +65,7 @@ fn time_once(scene: &Scene) -> Result<[f64; 9], Box<dyn std::error::Error + Send
     let sections = Stopwatch { stage: "sections", began: Mutex::default(), took_ms: Mutex::default() };
     let skeleton = Skeleton::build(&voxels, &rays, &sections, &cancel)?;
     lap();
-    let model = Model::of(&scene, rays, sources, voxels, skeleton);
+    let model = Model::of(scene, rays, sources, voxels, skeleton);
     let probes = model.probes_at_sensors(scene);
     lap();
     for method in [Method::Backward, Method::Forward] {

@@ -16,7 +16,7 @@ fn main() {
     let (progress, cancel) = (Quiet, Cancel::new());
     let scene = Scene::load(&file, &progress, &cancel).unwrap_or_else(|error| panic!("{error}"));
     let (rays, sources) = (Rays::new(&scene), Sources::of(&scene));
-    let settings = Settings { samples: SAMPLES, seed: 1, max_bounces: None };
+    let settings = Settings { samples: SAMPLES, seed: 1, ..Settings::default() };
     let started = Instant::now();
     let traced = trace(&scene, &rays, &sources, &settings, &progress, &cancel).expect("nobody cancels");
     let seconds = started.elapsed().as_secs_f64();
