@@ -78,7 +78,7 @@ fn traced(scene: &Scene, settings: &Settings) -> Traced {
 }
 
 fn readings(scene: &Scene, samples: u32) -> Vec<Reading> {
-    traced(scene, &Settings { samples, seed: 1, max_bounces: None }).field.readings
+    traced(scene, &Settings { samples, seed: 1, ..Settings::default() }).field.readings
 }
 
 /// What lifting a sensor off its surface changes at most, as a share.
@@ -241,7 +241,7 @@ fn bounces_are_counted_and_a_black_room_has_none() {
     let lit = |reflectance: f32, max_bounces: Option<u32>| {
         let light = point(Vec3::new(3.0, 2.0, 2.0), 50.0);
         let scene = scene_of(room(size), reflectance, vec![light], sensors.clone());
-        traced(&scene, &Settings { samples: 16_384, seed: 1, max_bounces }).field.readings[0]
+        traced(&scene, &Settings { samples: 16_384, seed: 1, max_bounces, ..Settings::default() }).field.readings[0]
     };
     let direct = 50.0 / (4.0 * PI) / 6.0;
     check(&lit(0.0, None), direct, 1e-5);
@@ -327,7 +327,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         Light::Sphere { centre_m: Vec3::splat(2.0), radius_m: 0.2, flux_w: 9.0 },
     ];
     let scene = scene_of(room(Vec3::new(4.0, 3.0, 2.5)), 0.6, lights, sensors);
-    let settings = Settings { samples: 1000, seed: 7, max_bounces: None };
+    let settings = Settings { samples: 1000, seed: 7, ..Settings::default() };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| traced(&scene, &settings))
@@ -361,7 +361,7 @@ fn a_cancelled_trace_stops_within_a_block_a_thread() {
     let scene = scene_of(room(Vec3::splat(2.0)), 0.9, vec![point(Vec3::splat(0.5), 50.0)], sensors);
     let cancel = Cancel::new();
     let progress = StopAtOnce { cancel: &cancel, done: Default::default() };
-    let settings = Settings { samples: 1_000_000, seed: 1, max_bounces: None };
+    let settings = Settings { samples: 1_000_000, seed: 1, ..Settings::default() };
     let result = trace(&scene, &Rays::new(&scene), &Sources::of(&scene), &settings, &progress, &cancel);
     assert_eq!(result, Err(Cancelled));
     assert!(progress.done.into_inner() <= rayon::current_num_threads() as u64);

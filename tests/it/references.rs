@@ -85,7 +85,7 @@ fn check(files: &[PathBuf], most_samples: usize, least: usize) {
         }
         let (rays, sources) = (Rays::new(&scene), Sources::of(&scene));
         let samples = (SAMPLES / scene.sensors.len()).min(most_samples) as u32;
-        let settings = Settings { samples, seed: 1, max_bounces: None };
+        let settings = Settings { samples, seed: 1, ..Settings::default() };
         let traced = trace(&scene, &rays, &sources, &settings, &progress, &cancel).expect("nobody cancels");
         let (deviations, leaning) = deviations(&scene, &traced, samples);
         all.extend(deviations);
