@@ -199,19 +199,22 @@ pub enum Method {
     Backward,
     /// The poster's flux carried along the shortest-path tree.
     Forward,
+    /// Light as a current through resistors.
+    Diffusion,
     /// The path tracer, as a method beside the others.
     Trace,
 }
 
 impl Method {
     /// All of them, in the order of the tables.
-    pub const ALL: [Method; 3] = [Method::Backward, Method::Forward, Method::Trace];
+    pub const ALL: [Method; 4] = [Method::Backward, Method::Forward, Method::Diffusion, Method::Trace];
 
     /// Its name in scene files, on the command line and in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Method::Backward => "backward",
             Method::Forward => "forward",
+            Method::Diffusion => "diffusion",
             Method::Trace => "trace",
         }
     }

@@ -1,0 +1,285 @@
+//! The skeleton as a network of resistors through which light flows.
+//!
+//! The potential of a node is the scalar irradiance phi of the diffuse light there, W/m2, a current is a net flux, W.
+//!
+//! - An edge conducts `A lambda / (3 h)`: section `A`, length `h`, mean free path `lambda = 4 V / S`, `V` void and `S` wall
+//!   pooled over the curve within [`WIDTHS`] of its width to either side and not through a neck.
+//! - A neck resists once more, as a Lambertian opening does: `2 (1/A - 1/A_1) + 2 (1/A - 1/A_2)`, `A_i` the section beyond it
+//!   on each side (both the same: `4 (1 - A/A_1)/A`). Strands of the curve through one neck share it.
+//! - Walls take light as Marshak's boundary has it: of absorptance `alpha`, a wall `S` conducts `alpha S / 4 / (1 - alpha/2)`
+//!   to the ground, and what it sends out by itself, `s` W/m2, feeds `S s / (1 - alpha/2)` in; it receives
+//!   `(phi/4 - s/2) / (1 - alpha/2)` W/m2.
+//! - The border of the grid conducts `A / 4` to the ground where a void leaks.
+
+use super::eliminate::Eliminated;
+use super::surroundings::Surroundings;
+use crate::model::Model;
+use crate::skeleton::Skeleton;
+use crate::skeleton::links::Links;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::VecDeque;
+
+/// How far along the curve walls and void are pooled to either side, in widths (twice the opening) of the void there.
+const WIDTHS: f64 = 0.5;
+
+/// The section beyond a neck is the widest within this many times the root of the neck's area.
+const BEYOND_NECK: f64 = 2.0;
+
+/// A sink below this share of the walls takes so little that there is no telling where the light stays.
+const LEAST_ABSORPTANCE: f64 = 1e-6;
+
+/// The resistor network of a model.
+#[derive(Debug)]
+pub struct Circuit {
+    links: Links,
+    ends: Vec<[u32; 2]>,
+    conductance_m2: Vec<f64>,
+    /// By node: how far its surroundings are pooled, metres, and what was found there.
+    reach_m: Vec<f64>,
+    pools: Vec<Pool>,
+    /// By node: `1 / (1 - alpha/2)` of the walls around.
+    pub coupling: Vec<f64>,
+    /// By node: wall area times its absorptance, m2.
+    pub absorbing_m2: Vec<f64>,
+    /// By node: openings to the outside, m2.
+    pub open_m2: Vec<f64>,
+    /// By node: the connected part of the skeleton it belongs to.
+    pub part: Vec<u32>,
+    /// By part: whether light ever gets out of it.
+    pub has_loss: Vec<bool>,
+    eliminated: Eliminated,
+}
+
+/// What lies within reach of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pool {
+    /// Void, m3.
+    pub volume_m3: f64,
+    /// Wall, m2.
+    pub wall_m2: f64,
+    /// Wall times its reflectance, m2.
+    pub reflecting_m2: f64,
+}
+
+impl Pool {
+    /// The mean way between two walls, metres; 0 where there is none.
+    fn free_path_m(&self) -> f64 {
+        if self.wall_m2 > 0.0 { 4.0 * self.volume_m3 / self.wall_m2 } else { 0.0 }
+    }
+
+    /// The mean reflectance of the walls; 0 where there is none.
+    pub fn reflectance(&self) -> f64 {
+        if self.wall_m2 > 0.0 { self.reflecting_m2 / self.wall_m2 } else { 0.0 }
+    }
+}
+
+impl Circuit {
+    /// The network of a model whose nodes are surrounded so.
+    pub fn new(model: &Model, around: &Surroundings) -> Self {
+        let skeleton = &model.skeleton;
+        let ends: Vec<[u32; 2]> = skeleton
+            .graph
+            .raw_edges()
+            .iter()
+            .map(|edge| [edge.source(), edge.target()].map(|end| end.index() as u32))
+            .collect();
+        let links = Links::new(skeleton.graph.node_count(), &ends);
+        let voxel_m = f64::from(skeleton.lattice.voxel_m);
+        let widths_m = skeleton.graph.node_weights().map(|node| 2.0 * voxel_m * f64::from(node.opening_voxels));
+        let reach_m: Vec<f64> = widths_m.map(|width_m| WIDTHS * width_m).collect();
+        let pools = pooled(skeleton, &links, &reach_m, around);
+        let conductance_m2 = conductances_m2(skeleton, &links, &ends, &pools);
+
+        let coupling: Vec<f64> = pools.iter().map(|pool| 2.0 / (1.0 + pool.reflectance())).collect();
+        let absorbing =
+            around.wall_m2.iter().zip(&around.reflecting_m2).map(|(wall, reflecting)| (wall - reflecting).max(0.0));
+        let absorbing_m2: Vec<f64> = absorbing.collect();
+        let open_m2 = around.open_m2.clone();
+        let part = parts(&links);
+        let has_loss = has_loss(&part, &absorbing_m2, &open_m2, &around.wall_m2);
+
+        let to_ground =
+            (0..part.len()).map(|node| 0.25 * (absorbing_m2[node] * coupling[node] + open_m2[node])).collect();
+        let joints: Vec<(u32, u32, f64)> =
+            ends.iter().zip(&conductance_m2).map(|(&[a, b], &conductance_m2)| (a, b, conductance_m2)).collect();
+        let eliminated = Eliminated::new(to_ground, &joints);
+        Self {
+            links,
+            ends,
+            conductance_m2,
+            reach_m,
+            pools,
+            coupling,
+            absorbing_m2,
+            open_m2,
+            part,
+            has_loss,
+            eliminated,
+        }
+    }
+
+    /// The scalar irradiance at each node, W/m2, where walls send out these fluxes by node, W. Zero in parts that lose
+    /// nothing, where no light would ever be enough.
+    pub fn potentials_w_m2(&self, sources_w: &[f64]) -> Vec<f64> {
+        let currents_w = |node: usize| {
+            let lossy = self.has_loss[self.part[node] as usize];
+            if lossy { self.coupling[node] * sources_w[node] } else { 0.0 }
+        };
+        self.eliminated.potentials(&(0..self.part.len()).map(currents_w).collect::<Vec<f64>>())
+    }
+
+    /// The net flux around a node, W/m2: its integral over the pool, from the currents on the edges in it, over the pool's
+    /// volume; pointing to where the light comes from.
+    pub fn flux_w_m2(&self, skeleton: &Skeleton, node: u32, potentials_w_m2: &[f64]) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        let mut within = Vec::new();
+        within_reach(&self.links, skeleton, node, self.reach_m[node as usize], &mut Vec::new(), |node| {
+            within.push(node)
+        });
+        for &here in &within {
+            for link in self.links.of(here).iter().filter(|link| link.node > here && within.contains(&link.node)) {
+                let [from, to] = [here, link.node]
+                    .map(|end| skeleton.graph[petgraph::graph::NodeIndex::new(end as usize)].position_m.as_dvec3());
+                let rise_w_m2 = potentials_w_m2[link.node as usize] - potentials_w_m2[here as usize];
+                sum += self.conductance_m2[link.edge as usize] * rise_w_m2 * (to - from);
+            }
+        }
+        let volume_m3 = self.pools[node as usize].volume_m3;
+        if volume_m3 > 0.0 { sum / volume_m3 } else { DVec3::ZERO }
+    }
+
+    /// What the walls around a node take of light they send out (W, by node) and of its potentials, W, and what leaves
+    /// by openings.
+    pub fn losses_w(&self, sources_w: &[f64], potentials_w_m2: &[f64]) -> (f64, f64) {
+        let (mut absorbed_w, mut escaped_w) = (0.0, 0.0);
+        for (node, (source_w, phi)) in sources_w.iter().zip(potentials_w_m2).enumerate() {
+            let alpha_share = 1.0 - 1.0 / self.coupling[node];
+            absorbed_w += self.coupling[node] * (0.25 * self.absorbing_m2[node] * phi - alpha_share * source_w);
+            escaped_w += 0.25 * self.open_m2[node] * phi;
+        }
+        (absorbed_w, escaped_w)
+    }
+
+    /// What lies within reach of a node.
+    pub fn pool(&self, node: u32) -> Pool {
+        self.pools.get(node as usize).copied().unwrap_or_default()
+    }
+
+    /// How many edges there are.
+    pub fn edges(&self) -> usize {
+        self.ends.len()
+    }
+}
+
+/// Calls `visit` for each node within `reach_m` of a node along the curve, itself first, not through necks. `seen` is room to
+/// work in, left as found.
+fn within_reach(
+    links: &Links,
+    skeleton: &Skeleton,
+    node: u32,
+    reach_m: f64,
+    seen: &mut Vec<bool>,
+    mut visit: impl FnMut(u32),
+) {
+    seen.resize(links.nodes(), false);
+    seen[node as usize] = true;
+    let mut order = vec![node];
+    let mut open = VecDeque::from([(node, 0.0)]);
+    while let Some((here, along_m)) = open.pop_front() {
+        visit(here);
+        for link in links.of(here) {
+            let edge = &skeleton.graph.raw_edges()[link.edge as usize].weight;
+            let next_m = along_m + f64::from(edge.length_m);
+            if edge.neck.is_none() && next_m <= reach_m && !seen[link.node as usize] {
+                seen[link.node as usize] = true;
+                order.push(link.node);
+                open.push_back((link.node, next_m));
+            }
+        }
+    }
+    order.into_iter().for_each(|node| seen[node as usize] = false);
+}
+
+/// What lies within reach of each node.
+fn pooled(skeleton: &Skeleton, links: &Links, reach_m: &[f64], around: &Surroundings) -> Vec<Pool> {
+    let pool = |seen: &mut Vec<bool>, (node, &reach_m): (usize, &f64)| {
+        let mut pool = Pool::default();
+        within_reach(links, skeleton, node as u32, reach_m, seen, |near| {
+            pool.volume_m3 += around.volume_m3[near as usize];
+            pool.wall_m2 += around.wall_m2[near as usize];
+            pool.reflecting_m2 += around.reflecting_m2[near as usize];
+        });
+        pool
+    };
+    reach_m.par_iter().enumerate().map_init(Vec::new, pool).collect()
+}
+
+/// The conductance of each edge, m2.
+fn conductances_m2(skeleton: &Skeleton, links: &Links, ends: &[[u32; 2]], pools: &[Pool]) -> Vec<f64> {
+    let edges = skeleton.graph.raw_edges();
+    let mut strands = vec![0_u32; skeleton.necks.len()];
+    edges.iter().filter_map(|edge| edge.weight.neck).for_each(|neck| strands[neck as usize] += 1);
+
+    let conductance_m2 = |(edge, &[a, b]): (usize, &[u32; 2])| {
+        let weight = &edges[edge].weight;
+        let free_path_m = 0.5 * (pools[a as usize].free_path_m() + pools[b as usize].free_path_m());
+        let (section_m2, length_m) = (f64::from(weight.section_m2), f64::from(weight.length_m));
+        let Some(neck) = weight.neck else { return section_m2 * free_path_m / (3.0 * length_m) };
+        let strands = f64::from(strands[neck as usize]);
+        let area_m2 = f64::from(skeleton.necks[neck as usize].area_m2).max(f64::MIN_POSITIVE);
+        let beyond = [a, b].map(|side| beyond_m2(skeleton, links, side, area_m2));
+        let opening: f64 = beyond.iter().map(|beyond_m2| 2.0 * (1.0 / area_m2 - 1.0 / beyond_m2.max(area_m2))).sum();
+        let resistance = 3.0 * length_m / (area_m2 * free_path_m.max(f64::MIN_POSITIVE)) + opening;
+        1.0 / (resistance * strands)
+    };
+    ends.par_iter().enumerate().map(conductance_m2).collect()
+}
+
+/// The widest section on one side of a neck, near it, m2.
+fn beyond_m2(skeleton: &Skeleton, links: &Links, side: u32, neck_m2: f64) -> f64 {
+    let mut widest_m2 = 0.0_f64;
+    within_reach(links, skeleton, side, BEYOND_NECK * neck_m2.sqrt(), &mut Vec::new(), |node| {
+        for link in links.of(node) {
+            let edge = &skeleton.graph.raw_edges()[link.edge as usize].weight;
+            if edge.neck.is_none() {
+                widest_m2 = widest_m2.max(f64::from(edge.section_m2));
+            }
+        }
+    });
+    widest_m2
+}
+
+/// The connected part of each node, numbered by their lowest nodes.
+fn parts(links: &Links) -> Vec<u32> {
+    let mut part = vec![u32::MAX; links.nodes()];
+    let mut count = 0;
+    for node in 0..links.nodes() as u32 {
+        if part[node as usize] != u32::MAX {
+            continue;
+        }
+        part[node as usize] = count;
+        let mut open = vec![node];
+        while let Some(here) = open.pop() {
+            for link in
+                links.of(here).iter().filter(|link| part[link.node as usize] == u32::MAX).copied().collect::<Vec<_>>()
+            {
+                part[link.node as usize] = count;
+                open.push(link.node);
+            }
+        }
+        count += 1;
+    }
+    part
+}
+
+/// Whether the walls and openings of each part take anything.
+fn has_loss(part: &[u32], absorbing_m2: &[f64], open_m2: &[f64], wall_m2: &[f64]) -> Vec<bool> {
+    let count = part.iter().max().map_or(0, |most| *most as usize + 1);
+    let mut sums = vec![(0.0, 0.0); count];
+    for (node, &part) in part.iter().enumerate() {
+        sums[part as usize].0 += absorbing_m2[node] + open_m2[node];
+        sums[part as usize].1 += wall_m2[node];
+    }
+    sums.iter().map(|(loss_m2, wall_m2)| *loss_m2 > LEAST_ABSORPTANCE * wall_m2).collect()
+}

@@ -1,0 +1,239 @@
+//! How much light reaches a point, if light spreads through the veins as a current does through resistors?
+//!
+//! Direct light is exact, by shadow rays. What walls send back after that is taken for diffuse: it flows along the skeleton
+//! against resistances of known section, mean free path and length, leaks into the walls and out of the openings
+//! ([`circuit`]), and one exact elimination gives it at every node ([`eliminate`]). Where the direct light lands is found by
+//! a few thousand rays from the lights ([`photons`]); the estimate itself casts none. A higher quality lets those rays carry
+//! the light on for some bounces more before it is taken for diffuse, which it then is with better right.
+//!
+//! Limits: in dark rooms light does not spread by diffusion: through long dark runs it falls too fast, by orders of
+//! magnitude. Below a mean reflectance of [`LEAST_REFLECTANCE`] the field is a preview and says so. Across a room the
+//! diffuse part has one value; thin glazing in the way of the diffuse part lets it all through.
+
+pub mod circuit;
+pub mod eliminate;
+pub mod photons;
+pub mod surroundings;
+
+use super::direct::direct;
+use super::sequence;
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Field, Reading, Settings, Shares, Status};
+use crate::model::{Model, Probe};
+use circuit::Circuit;
+use glam::DVec3;
+use petgraph::graph::NodeIndex;
+use photons::Landed;
+use rayon::prelude::*;
+use surroundings::Surroundings;
+
+/// Below this mean reflectance the field is a preview.
+pub const LEAST_REFLECTANCE: f64 = 0.7;
+
+/// The qualities: bounces that rays carry before the rest is taken for diffuse.
+pub const BOUNCES: [u32; 4] = [0, 1, 2, 4];
+
+/// Shadow rays to a light that has a size.
+const SHADOW_RAYS: u32 = 16;
+
+/// Irradiance at the probes by diffusion alone, no bounce carried by rays.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn estimate(
+    model: &Model,
+    probes: &[Probe],
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Field, Cancelled> {
+    carried(0, model, probes, settings, progress, cancel)
+}
+
+/// Irradiance at the probes, `bounces` reflections carried by rays and the rest by diffusion.
+///
+/// Costs a few milliseconds for the walls and rays of a house, then a shadow ray a light for each probe, and some hundred a
+/// bounce.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn carried(
+    bounces: u32,
+    model: &Model,
+    probes: &[Probe],
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Field, Cancelled> {
+    progress.begin("circuit", 0);
+    let around = Surroundings::of(model);
+    let circuit = Circuit::new(model, &around);
+    progress.end();
+    cancel.check()?;
+
+    progress.begin("lights", 0);
+    let landed = photons::landed(model, bounces, settings.seed, cancel)?;
+    let diffuse = diffused(model, &circuit, &landed, settings.shares);
+    progress.end();
+
+    progress.begin("probes", probes.len() as u64);
+    let lit = Lit { model, circuit: &circuit, landed: &landed, diffuse: &diffuse, seed: settings.seed };
+    let rows = probes.par_iter().enumerate().map(|(number, probe)| {
+        cancel.check()?;
+        progress.advance(1);
+        Ok(lit.read(number, probe))
+    });
+    let rows: Vec<(Reading, Vec<f64>)> = rows.collect::<Result<_, Cancelled>>()?;
+    progress.end();
+
+    let (readings, shares): (Vec<Reading>, Vec<Vec<f64>>) = rows.into_iter().unzip();
+    let emitters = model.sources.emitters.len();
+    let shares = settings.shares.then(|| Shares { emitters, values_w_m2: shares.concat() });
+    Ok(Field { readings, warnings: warnings(model, &circuit, &around), shares })
+}
+
+/// The diffuse light of some emitters.
+struct Diffuse {
+    /// Their numbers in [`Model::shining`].
+    lights: std::ops::Range<usize>,
+    /// Scalar irradiance by node, W/m2.
+    potentials_w_m2: Vec<f64>,
+}
+
+/// The diffuse light of each emitter, or, where nobody asks for their shares, of all together.
+fn diffused(model: &Model, circuit: &Circuit, landed: &[Landed], shares: bool) -> Vec<Diffuse> {
+    let lights = model.shining.len();
+    let groups: Vec<_> = if shares { (0..lights).map(|light| light..light + 1).collect() } else { vec![0..lights] };
+    let diffuse = |lights: std::ops::Range<usize>| {
+        let sources_w = sources_w(circuit, &landed[lights.clone()]);
+        Diffuse { lights, potentials_w_m2: circuit.potentials_w_m2(&sources_w) }
+    };
+    groups.into_par_iter().map(diffuse).collect()
+}
+
+/// What walls send out for the circuit to spread, by node, W.
+fn sources_w(circuit: &Circuit, landed: &[Landed]) -> Vec<f64> {
+    let mut sources_w = vec![0.0; circuit.part.len()];
+    for &(node, flux_w) in landed.iter().flat_map(|landed| &landed.sources) {
+        sources_w[node as usize] += flux_w;
+    }
+    sources_w
+}
+
+/// All light, ready to be read.
+struct Lit<'a> {
+    model: &'a Model,
+    circuit: &'a Circuit,
+    landed: &'a [Landed],
+    diffuse: &'a [Diffuse],
+    seed: u64,
+}
+
+impl Lit<'_> {
+    /// The reading of a probe, and what each emitter has in it where the emitters were kept apart.
+    fn read(&self, number: usize, probe: &Probe) -> (Reading, Vec<f64>) {
+        let mut shares = vec![0.0; self.model.sources.emitters.len()];
+        let node = match probe.place {
+            Ok(node) => node,
+            Err(status) => return (Reading::none(status), shares),
+        };
+        let part = |node: NodeIndex| self.circuit.part.get(node.index());
+        let mut reading = Reading::none(Status::Unreached);
+        for diffuse in self.diffuse {
+            let mut reached = false;
+            let mut sum = (0.0, DVec3::ZERO);
+            for light in diffuse.lights.clone() {
+                let shining = &self.model.shining[light];
+                if shining.place.is_ok_and(|place| part(place) == part(node)) {
+                    reached = true;
+                    let (value_w_m2, flux_w_m2) = self.on_rays(number, probe, light);
+                    sum.0 += value_w_m2;
+                    sum.1 += flux_w_m2;
+                }
+            }
+            if !reached {
+                continue;
+            }
+            let (value_w_m2, flux_w_m2) = self.diffuse(probe, node, &diffuse.potentials_w_m2);
+            let value_w_m2 = sum.0 + value_w_m2;
+            reading.status = Status::Ok;
+            reading.value_w_m2 += value_w_m2;
+            reading.flux_w_m2 += sum.1 + flux_w_m2;
+            if let [light] = diffuse.lights.clone().collect::<Vec<_>>()[..] {
+                shares[self.model.shining[light].emitter] += value_w_m2;
+            }
+        }
+        if reading.status == Status::Ok && reading.value_w_m2 == 0.0 {
+            reading.status = Status::Dark;
+        }
+        (reading, shares)
+    }
+
+    /// What an emitter gives straight, and by the bounces that rays carried: value and net flux, W/m2.
+    fn on_rays(&self, number: usize, probe: &Probe, light: usize) -> (f64, DVec3) {
+        let lift_m = probe.normal.map_or(glam::Vec3::ZERO, |normal| 2.0 * self.model.rays.epsilon_m() * normal);
+        let at_m = probe.position_m + lift_m;
+        let emitter = self.model.shining[light].emitter;
+        let offset = sequence::offset(self.seed, (emitter as u64) << 40 | number as u64);
+        let straight = direct(self.model, at_m, probe.normal, emitter, SHADOW_RAYS, offset);
+        let (mut value_w_m2, mut flux_w_m2) = (straight.value_w_m2, straight.flux_w_m2);
+        for lamp in &self.landed[light].lamps {
+            let irradiance_w_m2 = lamp.irradiance_w_m2(at_m);
+            let towards = (lamp.position_m - at_m).normalize_or_zero();
+            let cosine = probe.normal.map_or(1.0, |normal| f64::from(normal.dot(towards)));
+            if irradiance_w_m2 > 0.0 && cosine > 0.0 {
+                let irradiance_w_m2 = irradiance_w_m2 * f64::from(self.model.rays.transmitted(lamp.position_m, at_m));
+                value_w_m2 += cosine * irradiance_w_m2;
+                flux_w_m2 += irradiance_w_m2 * towards.as_dvec3();
+            }
+        }
+        (value_w_m2, flux_w_m2)
+    }
+
+    /// What diffuse light gives: value and net flux, W/m2.
+    fn diffuse(&self, probe: &Probe, node: NodeIndex, potentials_w_m2: &[f64]) -> (f64, DVec3) {
+        let phi = potentials_w_m2.get(node.index()).copied().unwrap_or(0.0);
+        let flux = self.circuit.flux_w_m2(&self.model.skeleton, node.index() as u32, potentials_w_m2);
+        match probe.normal {
+            None => (phi, flux),
+            Some(normal) => {
+                let along = flux.dot(normal.as_dvec3());
+                ((phi / 4.0 + along / 2.0).max(0.0), flux)
+            }
+        }
+    }
+}
+
+/// What a reader of the field should know.
+fn warnings(model: &Model, circuit: &Circuit, around: &Surroundings) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let lit: Vec<u32> = model
+        .shining
+        .iter()
+        .filter_map(|light| light.place.ok())
+        .filter_map(|place| circuit.part.get(place.index()).copied())
+        .collect();
+    let (mut wall_m2, mut reflecting_m2) = (0.0, 0.0);
+    for (node, part) in circuit.part.iter().enumerate().filter(|(_, part)| lit.contains(part)) {
+        let _ = part;
+        wall_m2 += around.wall_m2[node];
+        reflecting_m2 += around.reflecting_m2[node];
+    }
+    let reflectance = if wall_m2 > 0.0 { reflecting_m2 / wall_m2 } else { 0.0 };
+    if !lit.is_empty() && reflectance < LEAST_REFLECTANCE {
+        warnings.push(format!(
+            "a mean reflectance of {reflectance:.2}: below {LEAST_REFLECTANCE} the diffusion of light is a preview, too dark by orders \
+             of magnitude at the end of long runs"
+        ));
+    }
+    if lit.iter().any(|&part| !circuit.has_loss[part as usize]) {
+        warnings.push(
+            "a void that is closed and absorbs nothing has no steady light: only what rays carry is counted there"
+                .to_owned(),
+        );
+    }
+    warnings
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,199 @@
+//! What surrounds each node: how much wall, how bright, how much open air?
+//!
+//! The true area of the mesh in each surface voxel goes to the node nearest to the void before it; a sheet with void on
+//! both sides counts on both. Where a void leaks, the faces it has on the border of the grid are openings.
+
+use crate::model::Model;
+use crate::space::VoxelIndex;
+use crate::voxel::brick;
+use crate::voxel::surface::SurfacePatch;
+use glam::{IVec3, Vec3};
+use rayon::prelude::*;
+
+/// Bricks of surface voxels that are done in one piece; fixed, so that sums do not depend on the threads.
+const BRICKS_A_PIECE: usize = 256;
+
+/// A mean normal shorter than this is that of faces back to back, or of a crumb: its area is shared among all sides.
+const FLAT: f32 = 0.5;
+
+/// Void in a direction this much along the mean normal lies on that side; less is beside the face.
+const ON_A_SIDE: f32 = 0.2;
+
+/// What surrounds each node; all by the number of the node.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Surroundings {
+    /// Void volume, m3.
+    pub volume_m3: Vec<f64>,
+    /// Wall area, m2.
+    pub wall_m2: Vec<f64>,
+    /// Wall area times its reflectance, m2.
+    pub reflecting_m2: Vec<f64>,
+    /// Area towards the outside of the grid, m2.
+    pub open_m2: Vec<f64>,
+}
+
+impl Surroundings {
+    /// What surrounds the nodes of a model. Takes some tens of nanoseconds a surface voxel.
+    pub fn of(model: &Model) -> Self {
+        let nodes = model.skeleton.graph.node_count();
+        let volumes_m3 = model.skeleton.graph.node_weights().map(|node| f64::from(node.volume_m3));
+        let mut all = Self {
+            volume_m3: volumes_m3.collect(),
+            wall_m2: vec![0.0; nodes],
+            reflecting_m2: vec![0.0; nodes],
+            open_m2: open_m2(model),
+        };
+        for (node, area_m2, reflectance) in walls(model).into_iter().flatten() {
+            all.wall_m2[node as usize] += area_m2;
+            all.reflecting_m2[node as usize] += area_m2 * reflectance;
+        }
+        all
+    }
+}
+
+/// Each piece of wall: its node, its area (m2) and its reflectance.
+fn walls(model: &Model) -> Vec<Vec<(u32, f64, f64)>> {
+    let (solid, surface) = (&model.voxels.solid, &model.voxels.surface);
+    let pieces = solid.words().par_chunks(BRICKS_A_PIECE).enumerate().map(|(piece, words)| {
+        let mut found = Vec::new();
+        for (at, &word) in words.iter().enumerate().filter(|(_, word)| **word != 0) {
+            let brick = piece * BRICKS_A_PIECE + at;
+            let first = surface.number(solid, solid.voxel(brick, word.trailing_zeros())).unwrap_or(usize::MAX);
+            let patches = surface.patches().get(first..).unwrap_or_default();
+            for (bit, patch) in brick::ones(word).zip(patches) {
+                each_side(model, solid.voxel(brick, bit), patch, |node, area_m2| {
+                    found.push((node, area_m2, f64::from(patch.reflectance)));
+                });
+            }
+        }
+        found
+    });
+    pieces.collect()
+}
+
+/// Gives the area of a patch to the node before it, on each side that has void.
+fn each_side(model: &Model, voxel: VoxelIndex, patch: &SurfacePatch, mut give: impl FnMut(u32, f64)) {
+    if patch.area_m2 <= 0.0 {
+        return;
+    }
+    let area_m2 = f64::from(patch.area_m2);
+    let node = |step: IVec3| model.skeleton.nearest.node(VoxelIndex(voxel.0 + step));
+    if patch.normal.length() >= FLAT {
+        // The void that lies straightest before the face and behind it: over faces first, then over edges and corners.
+        for steps in [&FACES[..], &CORNERS[..]] {
+            let mut sides = [(ON_A_SIDE, None); 2];
+            for &step in steps {
+                let along = patch.normal.dot(step.as_vec3().normalize());
+                let side = &mut sides[usize::from(along < 0.0)];
+                if along.abs() > side.0
+                    && let Some(node) = node(step)
+                {
+                    *side = (along.abs(), Some(node));
+                }
+            }
+            let found = sides.iter().filter_map(|(_, node)| *node);
+            if found.clone().count() > 0 {
+                return found.for_each(|node| give(node, area_m2));
+            }
+        }
+    }
+    for steps in [&FACES[..], &CORNERS[..]] {
+        let found: Vec<u32> = steps.iter().filter_map(|&step| node(step)).collect();
+        if !found.is_empty() {
+            return found.iter().for_each(|&node| give(node, area_m2 / found.len() as f64));
+        }
+    }
+}
+
+/// Steps over the faces of a voxel.
+const FACES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
+
+/// Steps over its edges and corners.
+const CORNERS: [IVec3; 20] = {
+    let mut steps = [IVec3::ZERO; 20];
+    let (mut count, mut at) = (0, 0);
+    while at < 27 {
+        let step = IVec3::new(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
+        if (step.x != 0) as u8 + (step.y != 0) as u8 + (step.z != 0) as u8 > 1 {
+            steps[count] = step;
+            count += 1;
+        }
+        at += 1;
+    }
+    steps
+};
+
+/// The area of each node's void on the border of the grid, m2; nothing where no void leaks.
+fn open_m2(model: &Model) -> Vec<f64> {
+    let mut open_m2 = vec![0.0; model.skeleton.graph.node_count()];
+    if !model.voxels.voids.iter().any(|part| part.leaks) {
+        return open_m2;
+    }
+    let lattice = &model.voxels.lattice;
+    let size = IVec3::from_array(lattice.size.map(|along| along as i32));
+    let face_m2 = f64::from(lattice.voxel_m).powi(2);
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for along in [0, size[axis] - 1] {
+            for (i, j) in (0..size[u]).flat_map(|i| (0..size[v]).map(move |j| (i, j))) {
+                let mut voxel = IVec3::ZERO;
+                (voxel[axis], voxel[u], voxel[v]) = (along, i, j);
+                if let Some(node) = model.skeleton.nearest.node(VoxelIndex(voxel)) {
+                    open_m2[node as usize] += face_m2;
+                }
+            }
+        }
+    }
+    open_m2
+}
+
+/// The node of a point on a wall: that of the void before the wall, looked for along the wall's normal and then back along
+/// the ray that found it, `back_m` long; `None` where the whole ray runs outside the void.
+pub fn node_before(model: &Model, point_m: Vec3, facing: Vec3, back: Vec3, back_m: f32) -> Option<u32> {
+    let lattice = &model.voxels.lattice;
+    let node = |at_m: Vec3| model.skeleton.nearest.node(lattice.voxel_at(at_m));
+    let before = [0.6, 1.1, 1.6].into_iter().find_map(|voxels| node(point_m + voxels * lattice.voxel_m * facing));
+    before.or_else(|| {
+        let steps = (2.0 * back_m / lattice.voxel_m).ceil().max(1.0);
+        (1..=steps as u32).find_map(|step| node(point_m + (step as f32 / steps * back_m) * back))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, room, two_rooms};
+    use crate::voxel::test_scenes::boxed;
+
+    fn sums(triangles: &[[Vec3; 3]]) -> (f64, f64, f64) {
+        let (_, model) = modelled(triangles, vec![lamp(Vec3::new(1.0, 1.4, 1.5), FLUX_W)], Vec::new());
+        let all = Surroundings::of(&model);
+        (all.volume_m3.iter().sum(), all.wall_m2.iter().sum(), all.open_m2.iter().sum())
+    }
+
+    #[test]
+    fn the_walls_of_rooms_are_all_there_once() {
+        let (volume_m3, wall_m2, open_m2) = sums(&room());
+        assert!((wall_m2 / 54.0 - 1.0).abs() < 1e-3 && open_m2 == 0.0, "{wall_m2}");
+        assert!((volume_m3 / 27.0 - 1.0).abs() < 0.05, "{volume_m3}");
+        // Floor and ceiling lose the foot of the wall between the rooms; it has two sides, and a front in the door.
+        let inside_m2 = 2.0 * (24.0 - 0.8) + 2.0 * 9.0 + 2.0 * 24.0 - 0.4 * 3.0 + 2.0 * 6.0 + 0.4 * 3.0;
+        let (_, wall_m2, _) = sums(&two_rooms());
+        assert!((wall_m2 / inside_m2 - 1.0).abs() < 0.02, "{wall_m2} for {inside_m2}");
+    }
+
+    #[test]
+    fn a_sheet_counts_on_both_sides() {
+        let mut triangles = room();
+        triangles.extend(&boxed(Vec3::new(1.0, 1.0, 0.5), Vec3::new(1.0, 2.0, 2.5))[8..10]);
+        let (_, wall_m2, _) = sums(&triangles);
+        let sheet_m2 = wall_m2 - 54.0;
+        assert!((sheet_m2 / 4.0 - 1.0).abs() < 0.1, "{sheet_m2}");
+    }
+
+    #[test]
+    fn a_void_that_leaks_is_open() {
+        let (_, _, open_m2) = sums(&room()[..10]);
+        assert!(open_m2 > 54.0, "{open_m2}");
+    }
+}
