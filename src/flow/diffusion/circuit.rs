@@ -48,7 +48,31 @@ pub struct Circuit {
     pub part: Vec<u32>,
     /// By part: whether light ever gets out of it.
     pub has_loss: Vec<bool>,
+    /// By neck: the nodes on its two sides, and the part of the fall of potential between them that is the opening's.
+    pub necks: Vec<Sides>,
+    /// By cell: the necks around it.
+    pub necks_of: Vec<Vec<u32>>,
     eliminated: Eliminated,
+}
+
+/// The two sides of a neck.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sides {
+    /// For each strand of the curve through it the node in its first and in its second cell.
+    pub nodes: Vec<[u32; 2]>,
+    /// The resistance of the opening over that of the whole edge.
+    pub opening: f64,
+}
+
+impl Sides {
+    /// How much more light there is beyond the neck than on side `side`: scalar irradiance, W/m2.
+    pub fn rise_w_m2(&self, side: usize, potentials_w_m2: &[f64]) -> f64 {
+        let mean = |side: usize| {
+            let sum: f64 = self.nodes.iter().map(|nodes| potentials_w_m2[nodes[side] as usize]).sum();
+            sum / self.nodes.len().max(1) as f64
+        };
+        self.opening * (mean(1 - side) - mean(side))
+    }
 }
 
 /// What lies within reach of a node.
@@ -89,7 +113,11 @@ impl Circuit {
         let widths_m = skeleton.graph.node_weights().map(|node| 2.0 * voxel_m * f64::from(node.opening_voxels));
         let reach_m: Vec<f64> = widths_m.map(|width_m| WIDTHS * width_m).collect();
         let pools = pooled(skeleton, &links, &reach_m, around);
-        let conductance_m2 = conductances_m2(skeleton, &links, &ends, &pools);
+        let (conductance_m2, necks) = conductances_m2(skeleton, &links, &ends, &pools);
+        let mut necks_of = vec![Vec::new(); skeleton.cells.len()];
+        for (neck, cell) in skeleton.necks.iter().enumerate().flat_map(|(neck, at)| at.cells.map(|cell| (neck, cell))) {
+            necks_of[cell as usize].push(neck as u32);
+        }
 
         let coupling: Vec<f64> = pools.iter().map(|pool| 2.0 / (1.0 + pool.reflectance())).collect();
         let absorbing =
@@ -115,6 +143,8 @@ impl Circuit {
             open_m2,
             part,
             has_loss,
+            necks,
+            necks_of,
             eliminated,
         }
     }
@@ -215,25 +245,35 @@ fn pooled(skeleton: &Skeleton, links: &Links, reach_m: &[f64], around: &Surround
     reach_m.par_iter().enumerate().map_init(Vec::new, pool).collect()
 }
 
-/// The conductance of each edge, m2.
-fn conductances_m2(skeleton: &Skeleton, links: &Links, ends: &[[u32; 2]], pools: &[Pool]) -> Vec<f64> {
+/// The conductance of each edge, m2, and the sides of each neck.
+fn conductances_m2(skeleton: &Skeleton, links: &Links, ends: &[[u32; 2]], pools: &[Pool]) -> (Vec<f64>, Vec<Sides>) {
     let edges = skeleton.graph.raw_edges();
-    let mut strands = vec![0_u32; skeleton.necks.len()];
-    edges.iter().filter_map(|edge| edge.weight.neck).for_each(|neck| strands[neck as usize] += 1);
+    let cell_of = |node: u32| skeleton.graph.raw_nodes()[node as usize].weight.cell;
+    let mut necks = vec![Sides::default(); skeleton.necks.len()];
+    for (edge, &[a, b]) in edges.iter().zip(ends) {
+        if let Some(neck) = edge.weight.neck {
+            let forwards = cell_of(a) == skeleton.necks[neck as usize].cells[0];
+            necks[neck as usize].nodes.push(if forwards { [a, b] } else { [b, a] });
+        }
+    }
 
-    let conductance_m2 = |(edge, &[a, b]): (usize, &[u32; 2])| {
-        let weight = &edges[edge].weight;
+    let mut conductances_m2 = Vec::with_capacity(ends.len());
+    for (edge, &[a, b]) in edges.iter().zip(ends) {
         let free_path_m = 0.5 * (pools[a as usize].free_path_m() + pools[b as usize].free_path_m());
-        let (section_m2, length_m) = (f64::from(weight.section_m2), f64::from(weight.length_m));
-        let Some(neck) = weight.neck else { return section_m2 * free_path_m / (3.0 * length_m) };
-        let strands = f64::from(strands[neck as usize]);
+        let (section_m2, length_m) = (f64::from(edge.weight.section_m2), f64::from(edge.weight.length_m));
+        let Some(neck) = edge.weight.neck else {
+            conductances_m2.push(section_m2 * free_path_m / (3.0 * length_m));
+            continue;
+        };
         let area_m2 = f64::from(skeleton.necks[neck as usize].area_m2).max(f64::MIN_POSITIVE);
         let beyond = [a, b].map(|side| beyond_m2(skeleton, links, side, area_m2));
         let opening: f64 = beyond.iter().map(|beyond_m2| 2.0 * (1.0 / area_m2 - 1.0 / beyond_m2.max(area_m2))).sum();
         let resistance = 3.0 * length_m / (area_m2 * free_path_m.max(f64::MIN_POSITIVE)) + opening;
-        1.0 / (resistance * strands)
-    };
-    ends.par_iter().enumerate().map(conductance_m2).collect()
+        let sides = &mut necks[neck as usize];
+        sides.opening = opening / resistance;
+        conductances_m2.push(1.0 / (resistance * sides.nodes.len() as f64));
+    }
+    (conductances_m2, necks)
 }
 
 /// The widest section on one side of a neck, near it, m2.

@@ -14,9 +14,10 @@ pub mod circuit;
 pub mod eliminate;
 pub mod photons;
 pub mod surroundings;
+pub mod views;
 
 use super::direct::direct;
-use super::sequence;
+use super::sequence::{self, SPHERE_SR};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Shares, Status};
 use crate::model::{Model, Probe};
@@ -192,15 +193,24 @@ impl Lit<'_> {
 
     /// What diffuse light gives: value and net flux, W/m2.
     fn diffuse(&self, probe: &Probe, node: NodeIndex, potentials_w_m2: &[f64]) -> (f64, DVec3) {
-        let phi = potentials_w_m2.get(node.index()).copied().unwrap_or(0.0);
-        let flux = self.circuit.flux_w_m2(&self.model.skeleton, node.index() as u32, potentials_w_m2);
-        match probe.normal {
-            None => (phi, flux),
-            Some(normal) => {
-                let along = flux.dot(normal.as_dvec3());
-                ((phi / 4.0 + along / 2.0).max(0.0), flux)
-            }
+        let skeleton = &self.model.skeleton;
+        let mut phi = potentials_w_m2.get(node.index()).copied().unwrap_or(0.0);
+        let mut flux = self.circuit.flux_w_m2(skeleton, node.index() as u32, potentials_w_m2);
+        let along = |flux: DVec3| probe.normal.map_or(0.0, |normal| normal.as_dvec3().dot(flux));
+        let mut planar = 0.25 * phi + 0.5 * along(flux);
+
+        let cell = skeleton.graph.node_weight(node).map_or(0, |node| node.cell);
+        for &neck in self.circuit.necks_of.get(cell as usize).into_iter().flatten() {
+            let opening = &skeleton.necks[neck as usize];
+            let side = usize::from(opening.cells[0] != cell);
+            let Some(view) = views::view(self.model, opening, side, probe.position_m) else { continue };
+            let radiance = self.circuit.necks[neck as usize].rise_w_m2(side, potentials_w_m2) / SPHERE_SR;
+            phi += radiance * view.solid_angle_sr;
+            flux += radiance * view.flux;
+            planar += radiance * along(view.flux).max(0.0);
         }
+        let value = if probe.normal.is_some() { planar } else { phi };
+        (value.max(0.0), flux)
     }
 }
 

@@ -6,11 +6,12 @@
 use crate::model::Model;
 use crate::space::VoxelIndex;
 use crate::voxel::brick;
+use crate::voxel::morphology::{self, Neighbours};
 use crate::voxel::surface::SurfacePatch;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
-/// Bricks of surface voxels that are done in one piece; fixed, so that sums do not depend on the threads.
+/// Bricks that are done in one piece; fixed, so that sums do not depend on the threads.
 const BRICKS_A_PIECE: usize = 256;
 
 /// A mean normal shorter than this is that of faces back to back, or of a crumb: its area is shared among all sides.
@@ -53,16 +54,29 @@ impl Surroundings {
 
 /// Each piece of wall: its node, its area (m2) and its reflectance.
 fn walls(model: &Model) -> Vec<Vec<(u32, f64, f64)>> {
-    let (solid, surface) = (&model.voxels.solid, &model.voxels.surface);
-    let pieces = solid.words().par_chunks(BRICKS_A_PIECE).enumerate().map(|(piece, words)| {
+    let (solid, void, surface) = (&model.voxels.solid, &model.voxels.void, &model.voxels.surface);
+    let near_void = morphology::dilate(void, Neighbours::All);
+    let words = || solid.words().iter().zip(near_void.words()).map(|(solid, near)| solid & near);
+    let words: Vec<(usize, u64)> = words().enumerate().filter(|(_, word)| *word != 0).collect();
+    let pieces = words.par_chunks(BRICKS_A_PIECE).map(|words| {
         let mut found = Vec::new();
-        for (at, &word) in words.iter().enumerate().filter(|(_, word)| **word != 0) {
-            let brick = piece * BRICKS_A_PIECE + at;
-            let first = surface.number(solid, solid.voxel(brick, word.trailing_zeros())).unwrap_or(usize::MAX);
+        for &(brick, word) in words {
+            let solids = solid.words()[brick];
+            let first = surface.number(solid, solid.voxel(brick, solids.trailing_zeros())).unwrap_or(usize::MAX);
             let patches = surface.patches().get(first..).unwrap_or_default();
-            for (bit, patch) in brick::ones(word).zip(patches) {
-                each_side(model, solid.voxel(brick, bit), patch, |node, area_m2| {
-                    found.push((node, area_m2, f64::from(patch.reflectance)));
+            let over_faces = [(0, true), (0, false), (1, true), (1, false), (2, true), (2, false)]
+                .map(|(axis, up)| void.shifted(brick, axis, up));
+            for bit in brick::ones(word) {
+                let Some(patch) = patches.get((solids & ((1 << bit) - 1)).count_ones() as usize) else { continue };
+                let voxel = solid.voxel(brick, bit);
+                let is_void = |step: usize| match over_faces.get(step) {
+                    Some(mask) => mask >> bit & 1 == 1,
+                    None => void.get(VoxelIndex(voxel.0 + STEPS[step])),
+                };
+                each_side(patch, is_void, |step, area_m2| {
+                    if let Some(node) = model.skeleton.nearest.node(VoxelIndex(voxel.0 + STEPS[step])) {
+                        found.push((node, area_m2, f64::from(patch.reflectance)));
+                    }
                 });
             }
         }
@@ -71,47 +85,53 @@ fn walls(model: &Model) -> Vec<Vec<(u32, f64, f64)>> {
     pieces.collect()
 }
 
-/// Gives the area of a patch to the node before it, on each side that has void.
-fn each_side(model: &Model, voxel: VoxelIndex, patch: &SurfacePatch, mut give: impl FnMut(u32, f64)) {
+/// Gives the area of a patch to the void before it, on each side that has void, by the number of the step there.
+fn each_side(patch: &SurfacePatch, is_void: impl Fn(usize) -> bool, mut give: impl FnMut(usize, f64)) {
     if patch.area_m2 <= 0.0 {
         return;
     }
     let area_m2 = f64::from(patch.area_m2);
-    let node = |step: IVec3| model.skeleton.nearest.node(VoxelIndex(voxel.0 + step));
-    if patch.normal.length() >= FLAT {
-        // The void that lies straightest before the face and behind it: over faces first, then over edges and corners.
-        for steps in [&FACES[..], &CORNERS[..]] {
+    // Over faces first, then over edges and corners.
+    let near = [0..FACES, FACES..STEPS.len()];
+    if patch.normal.length_squared() >= FLAT * FLAT {
+        for steps in near.clone() {
+            // The void that lies straightest before the face, and behind it.
             let mut sides = [(ON_A_SIDE, None); 2];
-            for &step in steps {
-                let along = patch.normal.dot(step.as_vec3().normalize());
+            for step in steps {
+                let along = patch.normal.dot(STEPS[step].as_vec3());
                 let side = &mut sides[usize::from(along < 0.0)];
-                if along.abs() > side.0
-                    && let Some(node) = node(step)
-                {
-                    *side = (along.abs(), Some(node));
+                if along.abs() > side.0 && is_void(step) {
+                    *side = (along.abs(), Some(step));
                 }
             }
-            let found = sides.iter().filter_map(|(_, node)| *node);
+            let found = sides.iter().filter_map(|(_, step)| *step);
             if found.clone().count() > 0 {
-                return found.for_each(|node| give(node, area_m2));
+                return found.for_each(|step| give(step, area_m2));
             }
         }
     }
-    for steps in [&FACES[..], &CORNERS[..]] {
-        let found: Vec<u32> = steps.iter().filter_map(|&step| node(step)).collect();
-        if !found.is_empty() {
-            return found.iter().for_each(|&node| give(node, area_m2 / found.len() as f64));
+    for steps in near {
+        let found = steps.filter(|&step| is_void(step));
+        let count = found.clone().count();
+        if count > 0 {
+            return found.for_each(|step| give(step, area_m2 / count as f64));
         }
     }
 }
 
-/// Steps over the faces of a voxel.
-const FACES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
+/// How many of the steps lead over a face.
+const FACES: usize = 6;
 
-/// Steps over its edges and corners.
-const CORNERS: [IVec3; 20] = {
-    let mut steps = [IVec3::ZERO; 20];
-    let (mut count, mut at) = (0, 0);
+/// Steps to the 26 voxels around one: over its faces, then over its edges and corners.
+const STEPS: [IVec3; 26] = {
+    let mut steps = [IVec3::ZERO; 26];
+    let faces = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
+    let mut count = 0;
+    while count < FACES {
+        steps[count] = faces[count];
+        count += 1;
+    }
+    let mut at = 0;
     while at < 27 {
         let step = IVec3::new(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
         if (step.x != 0) as u8 + (step.y != 0) as u8 + (step.z != 0) as u8 > 1 {
