@@ -196,6 +196,12 @@ impl Circuit {
         self.pools.get(node as usize).copied().unwrap_or_default()
     }
 
+    /// The cells that necks join to one.
+    pub fn cells_beside(&self, skeleton: &Skeleton, cell: u32) -> Vec<u32> {
+        let necks = self.necks_of.get(cell as usize).into_iter().flatten();
+        necks.flat_map(|&neck| skeleton.necks[neck as usize].cells).filter(|&other| other != cell).collect()
+    }
+
     /// How many edges there are.
     pub fn edges(&self) -> usize {
         self.ends.len()

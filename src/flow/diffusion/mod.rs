@@ -12,6 +12,7 @@
 
 pub mod circuit;
 pub mod eliminate;
+pub mod lamps;
 pub mod photons;
 pub mod surroundings;
 pub mod views;
@@ -147,7 +148,7 @@ impl Lit<'_> {
                 let shining = &self.model.shining[light];
                 if shining.place.is_ok_and(|place| part(place) == part(node)) {
                     reached = true;
-                    let (value_w_m2, flux_w_m2) = self.on_rays(number, probe, light);
+                    let (value_w_m2, flux_w_m2) = self.on_rays(number, probe, node, light);
                     sum.0 += value_w_m2;
                     sum.1 += flux_w_m2;
                 }
@@ -171,24 +172,21 @@ impl Lit<'_> {
     }
 
     /// What an emitter gives straight, and by the bounces that rays carried: value and net flux, W/m2.
-    fn on_rays(&self, number: usize, probe: &Probe, light: usize) -> (f64, DVec3) {
+    fn on_rays(&self, number: usize, probe: &Probe, node: NodeIndex, light: usize) -> (f64, DVec3) {
         let lift_m = probe.normal.map_or(glam::Vec3::ZERO, |normal| 2.0 * self.model.rays.epsilon_m() * normal);
         let at_m = probe.position_m + lift_m;
         let emitter = self.model.shining[light].emitter;
         let offset = sequence::offset(self.seed, (emitter as u64) << 40 | number as u64);
         let straight = direct(self.model, at_m, probe.normal, emitter, SHADOW_RAYS, offset);
-        let (mut value_w_m2, mut flux_w_m2) = (straight.value_w_m2, straight.flux_w_m2);
-        for lamp in &self.landed[light].lamps {
-            let irradiance_w_m2 = lamp.irradiance_w_m2(at_m);
-            let towards = (lamp.position_m - at_m).normalize_or_zero();
-            let cosine = probe.normal.map_or(1.0, |normal| f64::from(normal.dot(towards)));
-            if irradiance_w_m2 > 0.0 && cosine > 0.0 {
-                let irradiance_w_m2 = irradiance_w_m2 * f64::from(self.model.rays.transmitted(lamp.position_m, at_m));
-                value_w_m2 += cosine * irradiance_w_m2;
-                flux_w_m2 += irradiance_w_m2 * towards.as_dvec3();
-            }
-        }
-        (value_w_m2, flux_w_m2)
+        let cell = self.cell(node);
+        let next = self.circuit.cells_beside(&self.model.skeleton, cell);
+        let lamps = &self.landed[light].lamps;
+        let (value_w_m2, flux_w_m2) = lamps::gathered(self.model, probe, at_m, lamps, cell, &next, offset[0]);
+        (straight.value_w_m2 + value_w_m2, straight.flux_w_m2 + flux_w_m2)
+    }
+
+    fn cell(&self, node: NodeIndex) -> u32 {
+        self.model.skeleton.graph.node_weight(node).map_or(0, |node| node.cell)
     }
 
     /// What diffuse light gives: value and net flux, W/m2.
@@ -199,7 +197,7 @@ impl Lit<'_> {
         let along = |flux: DVec3| probe.normal.map_or(0.0, |normal| normal.as_dvec3().dot(flux));
         let mut planar = 0.25 * phi + 0.5 * along(flux);
 
-        let cell = skeleton.graph.node_weight(node).map_or(0, |node| node.cell);
+        let cell = self.cell(node);
         for &neck in self.circuit.necks_of.get(cell as usize).into_iter().flatten() {
             let opening = &skeleton.necks[neck as usize];
             let side = usize::from(opening.cells[0] != cell);

@@ -2,29 +2,28 @@
 //!
 //! Rays leave each emitter in an even sequence and carry equal parts of its flux. What a wall sends back after `bounces`
 //! reflections is left there as a source; until then it goes on from where it landed, in a random direction by the cosine,
-//! and the place where it set out is kept as a small lamp ([`Lamp`]), from which sensors take the light on its way (instant
-//! radiosity, Keller 1997). Glazing passes its part straight on. Nothing is drawn or dropped by chance, so what lands, is
+//! and the place where it set out is kept as a small lamp ([`Lamp`]), from which sensors take the light on its way . Glazing passes its part straight on. Nothing is drawn or dropped by chance, so what lands, is
 //! absorbed and escapes adds up to what was emitted.
 
+use super::lamps::Lamp;
 use super::surroundings::node_before;
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled};
 use crate::model::Model;
 use glam::Vec3;
 use rayon::prelude::*;
-use std::f64::consts::PI;
 
-/// Rays of all emitters together: half a millisecond. Twice as many move the gallery's sensors by under 1%.
+/// Rays of all emitters together where they only have to find what the light falls on: half a millisecond.
 const RAYS: usize = 2048;
+
+/// Rays of all emitters together for each bounce that they carry: a bounce thins them out.
+const RAYS_A_BOUNCE: usize = 4096;
 
 /// Rays that each emitter has at least.
 const LEAST_RAYS: usize = 64;
 
-/// Rays of all emitters together that leave lamps for the sensors, the first of each emitter; a sensor looks at each.
-const LAMP_RAYS: usize = 256;
-
-/// Lamp rays that each emitter has at least.
-const LEAST_LAMP_RAYS: usize = 16;
+/// Rays of all emitters together that leave lamps for the sensors, the first of each emitter.
+const LAMP_RAYS: usize = 2048;
 
 /// Surfaces of glazing and walls together that a ray may meet; what is left then stays where it is.
 const MOST_SURFACES: u32 = 64;
@@ -48,19 +47,6 @@ pub struct Landed {
     pub escaped_w: f64,
 }
 
-/// A place of a wall that sends light out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lamp {
-    /// Where it is, metres, lifted off the wall.
-    pub position_m: Vec3,
-    /// Unit normal.
-    pub normal: Vec3,
-    /// What it sends out, by the cosine, W.
-    pub flux_w: f64,
-    /// The square of the radius of the disc it stands for, m2: nearer than that it is no point.
-    pub radius_squared_m2: f64,
-}
-
 /// Light on its way.
 #[derive(Debug, Clone, Copy)]
 struct Ray {
@@ -77,8 +63,8 @@ struct Ray {
 /// [`Cancelled`] when `cancel` was raised.
 pub fn landed(model: &Model, bounces: u32, seed: u64, cancel: &Cancel) -> Result<Vec<Landed>, Cancelled> {
     let emitters = model.shining.len().max(1);
-    let count = (RAYS / emitters).max(LEAST_RAYS);
-    let with_lamps = (LAMP_RAYS / emitters).max(LEAST_LAMP_RAYS).min(count);
+    let count = (RAYS.max(RAYS_A_BOUNCE * bounces as usize) / emitters).max(LEAST_RAYS);
+    let with_lamps = (LAMP_RAYS / emitters).clamp(LEAST_RAYS, count);
     let pieces = count.div_ceil(RAYS_A_PIECE);
 
     let piece = |number: usize| {
@@ -131,6 +117,7 @@ impl Walk<'_> {
     fn follow(&self, ray: Ray, landed: &mut Landed) {
         let mut open = vec![ray];
         let mut draws = 0;
+        let nodes = self.model.skeleton.graph.raw_nodes();
         while let Some(ray) = open.pop() {
             let Some(hit) = self.model.rays.closest(ray.origin_m, ray.direction, f32::INFINITY) else {
                 landed.escaped_w += ray.flux_w;
@@ -155,34 +142,29 @@ impl Walk<'_> {
                 continue;
             }
             let origin_m = at_m + lift_m * facing;
+            let node = node_before(self.model, at_m, facing, -ray.direction, hit.distance_m);
             if ray.bounces < self.bounces && surfaces < MOST_SURFACES {
                 if self.lamps > 0.0 {
                     let distance_m = f64::from(hit.distance_m);
                     let slant = f64::from(facing.dot(-ray.direction)).max(0.1);
-                    let radius_squared_m2 = 4.0 * distance_m * distance_m / (slant * self.with_lamps as f64);
-                    let flux_w = reflected_w * self.lamps;
-                    landed.lamps.push(Lamp { position_m: origin_m, normal: facing, flux_w, radius_squared_m2 });
+                    landed.lamps.push(Lamp {
+                        position_m: origin_m,
+                        normal: facing,
+                        flux_w: reflected_w * self.lamps,
+                        radius_squared_m2: 4.0 * distance_m * distance_m / (slant * self.with_lamps as f64),
+                        cell: node.and_then(|node| nodes.get(node as usize)).map_or(u32::MAX, |node| node.weight.cell),
+                    });
                 }
                 let direction = sequence::cosine_about(facing, sequence::offset(self.seed, draws));
                 draws += 1;
                 open.push(Ray { origin_m, direction, flux_w: reflected_w, bounces: ray.bounces + 1, surfaces });
-            } else if let Some(node) = node_before(self.model, at_m, facing, -ray.direction, hit.distance_m) {
+            } else if let Some(node) = node {
                 landed.sources.push((node, reflected_w));
             } else {
                 // Outside the void that was modelled there is nothing it could light.
                 landed.absorbed_w += reflected_w;
             }
         }
-    }
-}
-
-impl Lamp {
-    /// What it would give to a point in plain view of it, on a surface that squarely faces it, W/m2.
-    pub fn irradiance_w_m2(&self, point_m: Vec3) -> f64 {
-        let towards = (point_m - self.position_m).as_dvec3();
-        let squared = towards.length_squared();
-        let cosine = self.normal.as_dvec3().dot(towards) / squared.sqrt().max(f64::MIN_POSITIVE);
-        self.flux_w * cosine.max(0.0) / (PI * (squared + self.radius_squared_m2)).max(f64::MIN_POSITIVE)
     }
 }
 
