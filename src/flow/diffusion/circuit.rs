@@ -66,13 +66,22 @@ pub struct Sides {
 
 impl Sides {
     /// How much more light there is beyond the neck than on side `side`: scalar irradiance, W/m2.
-    pub fn rise_w_m2(&self, side: usize, potentials_w_m2: &[f64]) -> f64 {
+    pub fn rise_w_m2(&self, side: usize, brightness_w_m2: &[f64]) -> f64 {
         let mean = |side: usize| {
-            let sum: f64 = self.nodes.iter().map(|nodes| potentials_w_m2[nodes[side] as usize]).sum();
+            let sum: f64 = self.nodes.iter().map(|nodes| brightness_w_m2[nodes[side] as usize]).sum();
             sum / self.nodes.len().max(1) as f64
         };
         self.opening * (mean(1 - side) - mean(side))
     }
+}
+
+/// Diffuse light in the circuit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Spread {
+    /// Scalar irradiance by node, W/m2.
+    pub potentials_w_m2: Vec<f64>,
+    /// Four times what the walls around each node send out, W/m2: its scalar irradiance for one who sees them alone.
+    pub brightness_w_m2: Vec<f64>,
 }
 
 /// What lies within reach of a node.
@@ -129,8 +138,14 @@ impl Circuit {
 
         let to_ground =
             (0..part.len()).map(|node| 0.25 * (absorbing_m2[node] * coupling[node] + open_m2[node])).collect();
-        let joints: Vec<(u32, u32, f64)> =
-            ends.iter().zip(&conductance_m2).map(|(&[a, b], &conductance_m2)| (a, b, conductance_m2)).collect();
+        let joints: Vec<(u32, u32, f64)> = ends
+            .iter()
+            .zip(&conductance_m2)
+            .map(|(&[a, b], &conductance_m2)| {
+                let reflectance = 0.5 * (pools[a as usize].reflectance() + pools[b as usize].reflectance());
+                (a, b, conductance_m2 * 2.0 * reflectance / (1.0 + reflectance))
+            })
+            .collect();
         let eliminated = Eliminated::new(to_ground, &joints);
         Self {
             links,
@@ -149,19 +164,48 @@ impl Circuit {
         }
     }
 
-    /// The scalar irradiance at each node, W/m2, where walls send out these fluxes by node, W. Zero in parts that lose
-    /// nothing, where no light would ever be enough.
-    pub fn potentials_w_m2(&self, sources_w: &[f64]) -> Vec<f64> {
-        let currents_w = |node: usize| {
-            let lossy = self.has_loss[self.part[node] as usize];
-            if lossy { self.coupling[node] * sources_w[node] } else { 0.0 }
+    /// The light that walls spread, which send out these fluxes by node, W. Nothing in parts that lose nothing, where no light
+    /// would ever be enough.
+    pub fn spread(&self, skeleton: &Skeleton, sources_w: &[f64]) -> Spread {
+        let lossy = |node: usize| self.has_loss[self.part[node] as usize];
+        let own_w_m2 = self.pooled_mean(skeleton, sources_w);
+        let given_w_m2 = |node: u32| {
+            if lossy(node as usize) { 2.0 * self.coupling[node as usize] * own_w_m2[node as usize] } else { 0.0 }
         };
-        self.eliminated.potentials(&(0..self.part.len()).map(currents_w).collect::<Vec<f64>>())
+        let mut currents_w: Vec<f64> = (0..self.part.len())
+            .map(|node| if lossy(node) { self.coupling[node] * sources_w[node] } else { 0.0 })
+            .collect();
+        for (&[a, b], conductance_m2) in self.ends.iter().zip(&self.conductance_m2) {
+            let current_w = conductance_m2 * (given_w_m2(a) - given_w_m2(b));
+            currents_w[a as usize] -= current_w;
+            currents_w[b as usize] += current_w;
+        }
+        let potentials_w_m2 = self.eliminated.potentials(&currents_w);
+        let brightness = |node: u32| self.kept(node) * potentials_w_m2[node as usize] + given_w_m2(node);
+        let brightness_w_m2 = (0..self.part.len() as u32).map(brightness).collect();
+        Spread { potentials_w_m2, brightness_w_m2 }
+    }
+
+    /// The mean over the walls within reach of each node of what is given by node; per m2.
+    fn pooled_mean(&self, skeleton: &Skeleton, by_node: &[f64]) -> Vec<f64> {
+        let mean = |seen: &mut Vec<bool>, node: usize| {
+            let mut sum = 0.0;
+            let reach_m = self.reach_m[node];
+            within_reach(&self.links, skeleton, node as u32, reach_m, seen, |near| sum += by_node[near as usize]);
+            let wall_m2 = self.pools[node].wall_m2;
+            if wall_m2 > 0.0 { sum / wall_m2 } else { 0.0 }
+        };
+        (0..by_node.len()).into_par_iter().map_init(Vec::new, mean).collect()
+    }
+
+    /// The share of a node's potential that its walls send back: `rho / (1 - alpha/2)`.
+    fn kept(&self, node: u32) -> f64 {
+        self.pools[node as usize].reflectance() * self.coupling[node as usize]
     }
 
     /// The net flux around a node, W/m2: its integral over the pool, from the currents on the edges in it, over the pool's
     /// volume; pointing to where the light comes from.
-    pub fn flux_w_m2(&self, skeleton: &Skeleton, node: u32, potentials_w_m2: &[f64]) -> DVec3 {
+    pub fn flux_w_m2(&self, skeleton: &Skeleton, node: u32, spread: &Spread) -> DVec3 {
         let mut sum = DVec3::ZERO;
         let mut within = Vec::new();
         within_reach(&self.links, skeleton, node, self.reach_m[node as usize], &mut Vec::new(), |node| {
@@ -171,7 +215,7 @@ impl Circuit {
             for link in self.links.of(here).iter().filter(|link| link.node > here && within.contains(&link.node)) {
                 let [from, to] = [here, link.node]
                     .map(|end| skeleton.graph[petgraph::graph::NodeIndex::new(end as usize)].position_m.as_dvec3());
-                let rise_w_m2 = potentials_w_m2[link.node as usize] - potentials_w_m2[here as usize];
+                let rise_w_m2 = spread.brightness_w_m2[link.node as usize] - spread.brightness_w_m2[here as usize];
                 sum += self.conductance_m2[link.edge as usize] * rise_w_m2 * (to - from);
             }
         }

@@ -22,7 +22,7 @@ use super::sequence::{self, SPHERE_SR};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Shares, Status};
 use crate::model::{Model, Probe};
-use circuit::Circuit;
+use circuit::{Circuit, Spread};
 use glam::DVec3;
 use petgraph::graph::NodeIndex;
 use photons::Landed;
@@ -98,8 +98,7 @@ pub fn carried(
 struct Diffuse {
     /// Their numbers in [`Model::shining`].
     lights: std::ops::Range<usize>,
-    /// Scalar irradiance by node, W/m2.
-    potentials_w_m2: Vec<f64>,
+    spread: Spread,
 }
 
 /// The diffuse light of each emitter, or, where nobody asks for their shares, of all together.
@@ -108,7 +107,7 @@ fn diffused(model: &Model, circuit: &Circuit, landed: &[Landed], shares: bool) -
     let groups: Vec<_> = if shares { (0..lights).map(|light| light..light + 1).collect() } else { vec![0..lights] };
     let diffuse = |lights: std::ops::Range<usize>| {
         let sources_w = sources_w(circuit, &landed[lights.clone()]);
-        Diffuse { lights, potentials_w_m2: circuit.potentials_w_m2(&sources_w) }
+        Diffuse { lights, spread: circuit.spread(&model.skeleton, &sources_w) }
     };
     groups.into_par_iter().map(diffuse).collect()
 }
@@ -156,7 +155,7 @@ impl Lit<'_> {
             if !reached {
                 continue;
             }
-            let (value_w_m2, flux_w_m2) = self.diffuse(probe, node, &diffuse.potentials_w_m2);
+            let (value_w_m2, flux_w_m2) = self.diffuse(probe, node, &diffuse.spread);
             let value_w_m2 = sum.0 + value_w_m2;
             reading.status = Status::Ok;
             reading.value_w_m2 += value_w_m2;
@@ -190,10 +189,10 @@ impl Lit<'_> {
     }
 
     /// What diffuse light gives: value and net flux, W/m2.
-    fn diffuse(&self, probe: &Probe, node: NodeIndex, potentials_w_m2: &[f64]) -> (f64, DVec3) {
+    fn diffuse(&self, probe: &Probe, node: NodeIndex, spread: &Spread) -> (f64, DVec3) {
         let skeleton = &self.model.skeleton;
-        let mut phi = potentials_w_m2.get(node.index()).copied().unwrap_or(0.0);
-        let mut flux = self.circuit.flux_w_m2(skeleton, node.index() as u32, potentials_w_m2);
+        let mut phi = spread.potentials_w_m2.get(node.index()).copied().unwrap_or(0.0);
+        let mut flux = self.circuit.flux_w_m2(skeleton, node.index() as u32, spread);
         let along = |flux: DVec3| probe.normal.map_or(0.0, |normal| normal.as_dvec3().dot(flux));
         let mut planar = 0.25 * phi + 0.5 * along(flux);
 
@@ -202,7 +201,7 @@ impl Lit<'_> {
             let opening = &skeleton.necks[neck as usize];
             let side = usize::from(opening.cells[0] != cell);
             let Some(view) = views::view(self.model, opening, side, probe.position_m) else { continue };
-            let radiance = self.circuit.necks[neck as usize].rise_w_m2(side, potentials_w_m2) / SPHERE_SR;
+            let radiance = self.circuit.necks[neck as usize].rise_w_m2(side, &spread.brightness_w_m2) / SPHERE_SR;
             phi += radiance * view.solid_angle_sr;
             flux += radiance * view.flux;
             planar += radiance * along(view.flux).max(0.0);
