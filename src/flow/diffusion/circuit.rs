@@ -9,6 +9,7 @@
 //! - Walls take light as Marshak's boundary has it: of absorptance `alpha`, a wall `S` conducts `alpha S / 4 / (1 - alpha/2)`
 //!   to the ground, and what it sends out by itself, `s` W/m2, feeds `S s / (1 - alpha/2)` in; it receives
 //!   `(phi/4 - s/2) / (1 - alpha/2)` W/m2.
+//! - Glazing that passes the share `t` resists `4 (1/t - 1) / A`.
 //! - The border of the grid conducts `A / 4` to the ground where a void leaks.
 
 use super::eliminate::Eliminated;
@@ -53,6 +54,7 @@ pub struct Circuit {
     /// By cell: the necks around it.
     pub necks_of: Vec<Vec<u32>>,
     eliminated: Eliminated,
+    textbook: Eliminated,
 }
 
 /// The two sides of a neck.
@@ -82,6 +84,9 @@ pub struct Spread {
     pub potentials_w_m2: Vec<f64>,
     /// Four times what the walls around each node send out, W/m2: its scalar irradiance for one who sees them alone.
     pub brightness_w_m2: Vec<f64>,
+    /// Scalar irradiance by node if currents followed it instead, W/m2: the textbook's diffusion. Where both agree light
+    /// does spread by diffusion; where they do not, neither is to be trusted.
+    pub textbook_w_m2: Vec<f64>,
 }
 
 /// What lies within reach of a node.
@@ -122,7 +127,7 @@ impl Circuit {
         let widths_m = skeleton.graph.node_weights().map(|node| 2.0 * voxel_m * f64::from(node.opening_voxels));
         let reach_m: Vec<f64> = widths_m.map(|width_m| WIDTHS * width_m).collect();
         let pools = pooled(skeleton, &links, &reach_m, around);
-        let (conductance_m2, necks) = conductances_m2(skeleton, &links, &ends, &pools);
+        let (conductance_m2, necks) = conductances_m2(model, &links, &ends, &pools);
         let mut necks_of = vec![Vec::new(); skeleton.cells.len()];
         for (neck, cell) in skeleton.necks.iter().enumerate().flat_map(|(neck, at)| at.cells.map(|cell| (neck, cell))) {
             necks_of[cell as usize].push(neck as u32);
@@ -136,17 +141,18 @@ impl Circuit {
         let part = parts(&links);
         let has_loss = has_loss(&part, &absorbing_m2, &open_m2, &around.wall_m2);
 
-        let to_ground =
+        let to_ground: Vec<f64> =
             (0..part.len()).map(|node| 0.25 * (absorbing_m2[node] * coupling[node] + open_m2[node])).collect();
-        let joints: Vec<(u32, u32, f64)> = ends
-            .iter()
-            .zip(&conductance_m2)
-            .map(|(&[a, b], &conductance_m2)| {
+        let joints = |share: &dyn Fn(f64) -> f64| -> Vec<(u32, u32, f64)> {
+            let joint = |(&[a, b], conductance_m2): (&[u32; 2], &f64)| {
                 let reflectance = 0.5 * (pools[a as usize].reflectance() + pools[b as usize].reflectance());
-                (a, b, conductance_m2 * 2.0 * reflectance / (1.0 + reflectance))
-            })
-            .collect();
-        let eliminated = Eliminated::new(to_ground, &joints);
+                (a, b, conductance_m2 * share(reflectance))
+            };
+            ends.iter().zip(&conductance_m2).map(joint).collect()
+        };
+        let (hops, textbook) = (joints(&|reflectance| 2.0 * reflectance / (1.0 + reflectance)), joints(&|_| 1.0));
+        let grounded = |joints: &[_]| Eliminated::new(Vec::clone(&to_ground), joints);
+        let (eliminated, textbook) = rayon::join(|| grounded(&hops), || grounded(&textbook));
         Self {
             links,
             ends,
@@ -161,6 +167,7 @@ impl Circuit {
             necks,
             necks_of,
             eliminated,
+            textbook,
         }
     }
 
@@ -175,6 +182,7 @@ impl Circuit {
         let mut currents_w: Vec<f64> = (0..self.part.len())
             .map(|node| if lossy(node) { self.coupling[node] * sources_w[node] } else { 0.0 })
             .collect();
+        let textbook_w_m2 = self.textbook.potentials(&currents_w);
         for (&[a, b], conductance_m2) in self.ends.iter().zip(&self.conductance_m2) {
             let current_w = conductance_m2 * (given_w_m2(a) - given_w_m2(b));
             currents_w[a as usize] -= current_w;
@@ -183,7 +191,7 @@ impl Circuit {
         let potentials_w_m2 = self.eliminated.potentials(&currents_w);
         let brightness = |node: u32| self.kept(node) * potentials_w_m2[node as usize] + given_w_m2(node);
         let brightness_w_m2 = (0..self.part.len() as u32).map(brightness).collect();
-        Spread { potentials_w_m2, brightness_w_m2 }
+        Spread { potentials_w_m2, brightness_w_m2, textbook_w_m2 }
     }
 
     /// The mean over the walls within reach of each node of what is given by node; per m2.
@@ -296,8 +304,10 @@ fn pooled(skeleton: &Skeleton, links: &Links, reach_m: &[f64], around: &Surround
 }
 
 /// The conductance of each edge, m2, and the sides of each neck.
-fn conductances_m2(skeleton: &Skeleton, links: &Links, ends: &[[u32; 2]], pools: &[Pool]) -> (Vec<f64>, Vec<Sides>) {
+fn conductances_m2(model: &Model, links: &Links, ends: &[[u32; 2]], pools: &[Pool]) -> (Vec<f64>, Vec<Sides>) {
+    let skeleton = &model.skeleton;
     let edges = skeleton.graph.raw_edges();
+    let has_glazing = model.walls.answers.iter().any(|answer| answer.passes > 0.0);
     let cell_of = |node: u32| skeleton.graph.raw_nodes()[node as usize].weight.cell;
     let mut necks = vec![Sides::default(); skeleton.necks.len()];
     for (edge, &[a, b]) in edges.iter().zip(ends) {
@@ -311,19 +321,28 @@ fn conductances_m2(skeleton: &Skeleton, links: &Links, ends: &[[u32; 2]], pools:
     for (edge, &[a, b]) in edges.iter().zip(ends) {
         let free_path_m = 0.5 * (pools[a as usize].free_path_m() + pools[b as usize].free_path_m());
         let (section_m2, length_m) = (f64::from(edge.weight.section_m2), f64::from(edge.weight.length_m));
+        let along = 3.0 * length_m / free_path_m.max(f64::MIN_POSITIVE);
+        let pane = if has_glazing { pane(model, a, b) } else { 0.0 };
         let Some(neck) = edge.weight.neck else {
-            conductances_m2.push(section_m2 * free_path_m / (3.0 * length_m));
+            conductances_m2.push(section_m2 / (along + pane));
             continue;
         };
         let area_m2 = f64::from(skeleton.necks[neck as usize].area_m2).max(f64::MIN_POSITIVE);
         let beyond = [a, b].map(|side| beyond_m2(skeleton, links, side, area_m2));
         let opening: f64 = beyond.iter().map(|beyond_m2| 2.0 * (1.0 / area_m2 - 1.0 / beyond_m2.max(area_m2))).sum();
-        let resistance = 3.0 * length_m / (area_m2 * free_path_m.max(f64::MIN_POSITIVE)) + opening;
+        let resistance = (along + pane) / area_m2 + opening;
         let sides = &mut necks[neck as usize];
         sides.opening = opening / resistance;
         conductances_m2.push(1.0 / (resistance * sides.nodes.len() as f64));
     }
     (conductances_m2, necks)
+}
+
+/// What glazing between two nodes resists, times its area: as an opening that lets its share through.
+fn pane(model: &Model, a: u32, b: u32) -> f64 {
+    let [from_m, to_m] = [a, b].map(|end| model.node_m(petgraph::graph::NodeIndex::new(end as usize)));
+    let share = f64::from(model.rays.transmitted_past(from_m, to_m, |_| false));
+    if share > 0.0 { 4.0 * (1.0 / share - 1.0) } else { 0.0 }
 }
 
 /// The widest section on one side of a neck, near it, m2.

@@ -6,6 +6,7 @@
 //! passed over, so the sum is right in the mean; the draws are evenly spaced along the lamps, which lie in the order of an
 //! even sequence.
 
+use crate::flow::direct::Direct;
 use crate::model::{Model, Probe};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -43,7 +44,8 @@ impl Lamp {
     }
 }
 
-/// What the lamps give to a probe in `cell`, whose necks lead to the cells `next`: value and net flux, W/m2. `turn` in [0, 1)
+/// What the lamps give to a probe in `cell`, whose necks lead to the cells `next`: as light straight from them, with
+/// its standard error if the draws were by chance, W/m2. `turn` in [0, 1)
 /// places the draws. Costs some nanoseconds a lamp and at most [`DRAWS`] rays.
 pub fn gathered(
     model: &Model,
@@ -53,8 +55,8 @@ pub fn gathered(
     cell: u32,
     next: &[u32],
     turn: f64,
-) -> (f64, DVec3) {
-    let (mut value_w_m2, mut flux_w_m2) = (0.0, DVec3::ZERO);
+) -> (Direct, f64) {
+    let (mut sum, mut squares) = (Direct::default(), 0.0);
     let towards = |lamp: &Lamp| (lamp.position_m - at_m).normalize_or_zero();
     let cosine = |lamp: &Lamp| probe.normal.map_or(1.0, |normal| f64::from(normal.dot(towards(lamp)).max(0.0)));
     let chance = |lamp: &Lamp| match lamp.cell {
@@ -71,7 +73,7 @@ pub fn gathered(
     let weights: Vec<f64> = weights.collect();
     let step = up_to / f64::from(DRAWS);
     if step.is_nan() || step <= 0.0 {
-        return (value_w_m2, flux_w_m2);
+        return (sum, 0.0);
     }
     let mut drawn = 0.0;
     for (lamp, up_to) in lamps.iter().zip(weights) {
@@ -82,8 +84,9 @@ pub fn gathered(
         }
         drawn += draws;
         let given_w_m2 = draws * step / chance(lamp) * f64::from(model.rays.transmitted(lamp.position_m, at_m));
-        value_w_m2 += given_w_m2;
-        flux_w_m2 += given_w_m2 / cosine(lamp) * towards(lamp).as_dvec3();
+        squares += draws * (given_w_m2 / draws).powi(2);
+        sum.value_w_m2 += given_w_m2;
+        sum.flux_w_m2 += given_w_m2 / cosine(lamp) * towards(lamp).as_dvec3();
     }
-    (value_w_m2, flux_w_m2)
+    (sum, squares.sqrt())
 }

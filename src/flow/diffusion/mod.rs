@@ -17,7 +17,7 @@ pub mod photons;
 pub mod surroundings;
 pub mod views;
 
-use super::direct::direct;
+use super::direct::{Direct, direct};
 use super::sequence::{self, SPHERE_SR};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Shares, Status};
@@ -34,6 +34,9 @@ pub const LEAST_REFLECTANCE: f64 = 0.7;
 
 /// The qualities: bounces that rays carry before the rest is taken for diffuse.
 pub const BOUNCES: [u32; 4] = [0, 1, 2, 4];
+
+/// Error of the diffuse part where both forms of diffusion agree, as a share of it: rooms are not uniform.
+const MODEL_ERROR: f64 = 0.2;
 
 /// Shadow rays to a light that has a size.
 const SHADOW_RAYS: u32 = 16;
@@ -140,6 +143,7 @@ impl Lit<'_> {
         };
         let part = |node: NodeIndex| self.circuit.part.get(node.index());
         let mut reading = Reading::none(Status::Unreached);
+        let (mut diffuse_w_m2, mut noise_w_m4, mut textbook_w_m2) = (0.0, 0.0, 0.0);
         for diffuse in self.diffuse {
             let mut reached = false;
             let mut sum = (0.0, DVec3::ZERO);
@@ -147,22 +151,29 @@ impl Lit<'_> {
                 let shining = &self.model.shining[light];
                 if shining.place.is_ok_and(|place| part(place) == part(node)) {
                     reached = true;
-                    let (value_w_m2, flux_w_m2) = self.on_rays(number, probe, node, light);
-                    sum.0 += value_w_m2;
-                    sum.1 += flux_w_m2;
+                    let (straight, carried, noise_w_m2) = self.on_rays(number, probe, node, light);
+                    sum.0 += straight.value_w_m2 + carried.value_w_m2;
+                    sum.1 += straight.flux_w_m2 + carried.flux_w_m2;
+                    noise_w_m4 += noise_w_m2 * noise_w_m2;
                 }
             }
             if !reached {
                 continue;
             }
-            let (value_w_m2, flux_w_m2) = self.diffuse(probe, node, &diffuse.spread);
-            let value_w_m2 = sum.0 + value_w_m2;
+            let (spread_w_m2, flux_w_m2, other_w_m2) = self.diffuse(probe, node, &diffuse.spread);
+            let value_w_m2 = sum.0 + spread_w_m2;
             reading.status = Status::Ok;
             reading.value_w_m2 += value_w_m2;
             reading.flux_w_m2 += sum.1 + flux_w_m2;
+            diffuse_w_m2 += spread_w_m2;
+            textbook_w_m2 += other_w_m2;
             if let [light] = diffuse.lights.clone().collect::<Vec<_>>()[..] {
                 shares[self.model.shining[light].emitter] += value_w_m2;
             }
+        }
+        if reading.status == Status::Ok {
+            let error_w_m2 = (MODEL_ERROR * diffuse_w_m2).hypot(noise_w_m4.sqrt()).hypot(textbook_w_m2);
+            reading.error_w_m2 = Some(error_w_m2);
         }
         if reading.status == Status::Ok && reading.value_w_m2 == 0.0 {
             reading.status = Status::Dark;
@@ -170,8 +181,8 @@ impl Lit<'_> {
         (reading, shares)
     }
 
-    /// What an emitter gives straight, and by the bounces that rays carried: value and net flux, W/m2.
-    fn on_rays(&self, number: usize, probe: &Probe, node: NodeIndex, light: usize) -> (f64, DVec3) {
+    /// What an emitter gives straight, and by the bounces that rays carried: and the noise of that.
+    fn on_rays(&self, number: usize, probe: &Probe, node: NodeIndex, light: usize) -> (Direct, Direct, f64) {
         let lift_m = probe.normal.map_or(glam::Vec3::ZERO, |normal| 2.0 * self.model.rays.epsilon_m() * normal);
         let at_m = probe.position_m + lift_m;
         let emitter = self.model.shining[light].emitter;
@@ -180,34 +191,38 @@ impl Lit<'_> {
         let cell = self.cell(node);
         let next = self.circuit.cells_beside(&self.model.skeleton, cell);
         let lamps = &self.landed[light].lamps;
-        let (value_w_m2, flux_w_m2) = lamps::gathered(self.model, probe, at_m, lamps, cell, &next, offset[0]);
-        (straight.value_w_m2 + value_w_m2, straight.flux_w_m2 + flux_w_m2)
+        let (carried, noise_w_m2) = lamps::gathered(self.model, probe, at_m, lamps, cell, &next, offset[0]);
+        (straight, carried, noise_w_m2)
     }
 
     fn cell(&self, node: NodeIndex) -> u32 {
         self.model.skeleton.graph.node_weight(node).map_or(0, |node| node.cell)
     }
 
-    /// What diffuse light gives: value and net flux, W/m2.
-    fn diffuse(&self, probe: &Probe, node: NodeIndex, spread: &Spread) -> (f64, DVec3) {
+    /// What diffuse light gives: value, net flux, and what the textbook's diffusion adds to the value, W/m2.
+    fn diffuse(&self, probe: &Probe, node: NodeIndex, spread: &Spread) -> (f64, DVec3, f64) {
         let skeleton = &self.model.skeleton;
-        let mut phi = spread.potentials_w_m2.get(node.index()).copied().unwrap_or(0.0);
+        let at = |by_node: &[f64]| by_node.get(node.index()).copied().unwrap_or(0.0);
+        let (phi, other) = (at(&spread.potentials_w_m2), at(&spread.textbook_w_m2));
         let mut flux = self.circuit.flux_w_m2(skeleton, node.index() as u32, spread);
-        let along = |flux: DVec3| probe.normal.map_or(0.0, |normal| normal.as_dvec3().dot(flux));
-        let mut planar = 0.25 * phi + 0.5 * along(flux);
+        let normal = probe.normal.map(|normal| normal.as_dvec3());
+        let (mut value, mut more) = match normal {
+            None => (phi, other - phi),
+            Some(normal) => (0.25 * phi + 0.5 * normal.dot(flux), 0.25 * (other - phi)),
+        };
 
         let cell = self.cell(node);
         for &neck in self.circuit.necks_of.get(cell as usize).into_iter().flatten() {
-            let opening = &skeleton.necks[neck as usize];
+            let (opening, sides) = (&skeleton.necks[neck as usize], &self.circuit.necks[neck as usize]);
             let side = usize::from(opening.cells[0] != cell);
             let Some(view) = views::view(self.model, opening, side, probe.position_m) else { continue };
-            let radiance = self.circuit.necks[neck as usize].rise_w_m2(side, &spread.brightness_w_m2) / SPHERE_SR;
-            phi += radiance * view.solid_angle_sr;
+            let radiance = sides.rise_w_m2(side, &spread.brightness_w_m2) / SPHERE_SR;
+            let seen = normal.map_or(view.solid_angle_sr, |normal| normal.dot(view.flux).max(0.0));
+            value += radiance * seen;
             flux += radiance * view.flux;
-            planar += radiance * along(view.flux).max(0.0);
+            more += sides.rise_w_m2(side, &spread.textbook_w_m2) / SPHERE_SR * seen - radiance * seen;
         }
-        let value = if probe.normal.is_some() { planar } else { phi };
-        (value.max(0.0), flux)
+        (value.max(0.0), flux, more)
     }
 }
 

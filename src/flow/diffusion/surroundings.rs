@@ -3,6 +3,7 @@
 //! The true area of the mesh in each surface voxel goes to the node nearest to the void before it; a sheet with void on
 //! both sides counts on both. Where a void leaks, the faces it has on the border of the grid are openings.
 
+use crate::flow::sequence;
 use crate::model::Model;
 use crate::space::VoxelIndex;
 use crate::voxel::brick;
@@ -16,6 +17,9 @@ const BRICKS_A_PIECE: usize = 256;
 
 /// A mean normal shorter than this is that of faces back to back, or of a crumb: its area is shared among all sides.
 const FLAT: f32 = 0.5;
+
+/// Points that stand for a pane at most.
+const MOST_PIECES: f64 = 10_000.0;
 
 /// Void in a direction this much along the mean normal lies on that side; less is beside the face.
 const ON_A_SIDE: f32 = 0.2;
@@ -44,15 +48,16 @@ impl Surroundings {
             reflecting_m2: vec![0.0; nodes],
             open_m2: open_m2(model),
         };
-        for (node, area_m2, reflectance) in walls(model).into_iter().flatten() {
+        let panes = panes(model);
+        for (node, area_m2, reflecting_m2) in walls(model).into_iter().flatten().chain(panes) {
             all.wall_m2[node as usize] += area_m2;
-            all.reflecting_m2[node as usize] += area_m2 * reflectance;
+            all.reflecting_m2[node as usize] += reflecting_m2;
         }
         all
     }
 }
 
-/// Each piece of wall: its node, its area (m2) and its reflectance.
+/// Each piece of wall: its node, its area, and that times its reflectance, m2.
 fn walls(model: &Model) -> Vec<Vec<(u32, f64, f64)>> {
     let (solid, void, surface) = (&model.voxels.solid, &model.voxels.void, &model.voxels.surface);
     let near_void = morphology::dilate(void, Neighbours::All);
@@ -75,7 +80,7 @@ fn walls(model: &Model) -> Vec<Vec<(u32, f64, f64)>> {
                 };
                 each_side(patch, is_void, |step, area_m2| {
                     if let Some(node) = model.skeleton.nearest.node(VoxelIndex(voxel.0 + STEPS[step])) {
-                        found.push((node, area_m2, f64::from(patch.reflectance)));
+                        found.push((node, area_m2, area_m2 * f64::from(patch.reflectance)));
                     }
                 });
             }
@@ -83,6 +88,33 @@ fn walls(model: &Model) -> Vec<Vec<(u32, f64, f64)>> {
         found
     });
     pieces.collect()
+}
+
+/// Each piece of glazing, which is no matter to the voxels, for the node on each of its sides: as much of a wall as it does not
+/// let pass.
+fn panes(model: &Model) -> Vec<(u32, f64, f64)> {
+    let voxel_m = model.voxels.lattice.voxel_m;
+    let mut found = Vec::new();
+    for (corners_m, answer) in model.walls.corners_m.iter().zip(&model.walls.answers).filter(|(_, at)| at.passes > 0.0)
+    {
+        let [a, b, c] = *corners_m;
+        let cross = (b - a).cross(c - a);
+        let (area_m2, normal) = (0.5 * f64::from(cross.length()), cross.normalize_or_zero());
+        let pieces = (area_m2 / f64::from(voxel_m * voxel_m)).ceil().clamp(1.0, MOST_PIECES);
+        for index in 0..pieces as u32 {
+            let [u, v] = sequence::square(index, [0.0; 2]).map(|number| number as f32);
+            let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+            let at_m = a + u * (b - a) + v * (c - a);
+            for side in [normal, -normal] {
+                let voxel = model.voxels.lattice.voxel_at(at_m + 0.6 * voxel_m * side);
+                if let Some(node) = model.skeleton.nearest.node(voxel) {
+                    let [passed, reflected] = [answer.passes, answer.reflects].map(f64::from);
+                    found.push((node, (1.0 - passed) * area_m2 / pieces, reflected * area_m2 / pieces));
+                }
+            }
+        }
+    }
+    found
 }
 
 /// Gives the area of a patch to the void before it, on each side that has void, by the number of the step there.
