@@ -9,6 +9,7 @@ pub mod backward;
 pub mod diffusion;
 pub mod direct;
 pub mod forward;
+pub mod network;
 pub mod paths;
 pub mod sequence;
 pub mod solve;
@@ -32,6 +33,7 @@ pub fn estimator(method: Method) -> Option<&'static Estimator<'static>> {
         Method::Backward => Some(&backward::estimate),
         Method::Forward => Some(&forward::estimate),
         Method::Diffusion => Some(&diffusion::estimate),
+        Method::Network => Some(&network::estimate),
         Method::Trace => None,
     }
 }
@@ -60,6 +62,7 @@ pub fn ladder(method: Method) -> Vec<Rung> {
         Method::Backward => one(Box::new(backward::estimate)),
         Method::Forward => one(Box::new(forward::estimate)),
         Method::Diffusion => diffusion::BOUNCES.map(by_diffusion).into(),
+        Method::Network => one(network::with(network::Quality::MEDIUM)),
         Method::Trace => Vec::new(),
     }
 }
