@@ -26,7 +26,8 @@ fn one_thread_and_many_give_the_same_bits() {
                 };
                 let traced = trace(&scene, &model.rays, &model.sources, &settings, &Quiet, &Cancel::new()).unwrap();
                 let carried = &ladder(Method::Diffusion)[1].estimate;
-                let carried = carried(&model, &model.probes_at_sensors(&scene), &settings, &Quiet, &Cancel::new()).unwrap();
+                let carried =
+                    carried(&model, &model.probes_at_sensors(&scene), &settings, &Quiet, &Cancel::new()).unwrap();
                 let estimated = [Method::Backward, Method::Forward, Method::Diffusion].map(estimate);
                 let fields: Vec<Field> = estimated.into_iter().chain([carried, traced.field]).collect();
                 (skeleton_in_words(&model), model.voxels.clone(), fields)

@@ -40,7 +40,7 @@ impl Lamp {
         let towards = (point_m - self.position_m).as_dvec3();
         let squared = towards.length_squared();
         let cosine = self.normal.as_dvec3().dot(towards) / squared.sqrt().max(f64::MIN_POSITIVE);
-        self.flux_w * cosine.max(0.0) / (PI * (squared + self.radius_squared_m2)).max(f64::MIN_POSITIVE)
+        self.flux_w * cosine.max(0.0) / (PI * squared.max(self.radius_squared_m2)).max(f64::MIN_POSITIVE)
     }
 }
 
