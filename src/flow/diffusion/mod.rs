@@ -8,7 +8,7 @@
 //!
 //! Limits: in dark rooms light does not spread by diffusion: through long dark runs it falls too fast, by orders of
 //! magnitude. Below a mean reflectance of [`LEAST_REFLECTANCE`] the field is a preview and says so. Across a room the
-//! diffuse part has one value; thin glazing in the way of the diffuse part lets it all through.
+//! diffuse part has one value; a pane hinders it where the curve passes through the pane, not within a room of one node.
 
 pub mod circuit;
 pub mod eliminate;

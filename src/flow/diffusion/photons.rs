@@ -17,13 +17,13 @@ use rayon::prelude::*;
 const RAYS: usize = 2048;
 
 /// Rays of all emitters together for each bounce that they carry: a bounce thins them out.
-const RAYS_A_BOUNCE: usize = 4096;
+const RAYS_A_BOUNCE: usize = 8192;
 
 /// Rays that each emitter has at least.
 const LEAST_RAYS: usize = 64;
 
 /// Rays of all emitters together that leave lamps for the sensors, the first of each emitter.
-const LAMP_RAYS: usize = 2048;
+const LAMP_RAYS: usize = 4096;
 
 /// Surfaces of glazing and walls together that a ray may meet; what is left then stays where it is.
 const MOST_SURFACES: u32 = 64;

@@ -16,10 +16,10 @@ fn grey(triangles: &[[Vec3; 3]], reflectance: f32) -> Scene {
     scene
 }
 
-/// A room whose middle is crossed by a pane.
+/// A gallery of 8 x 2 x 2 m whose middle is crossed by a pane.
 fn glazed(transmittance: f32) -> Scene {
-    let mut triangles = room();
-    triangles.extend(&boxed(Vec3::new(1.5, 0.0, 0.0), Vec3::new(1.5, 3.0, 3.0))[8..10]);
+    let mut triangles = boxed(Vec3::ZERO, Vec3::new(8.0, 2.0, 2.0));
+    triangles.extend(&boxed(Vec3::new(4.0, 0.0, 0.0), Vec3::new(4.0, 2.0, 2.0))[8..10]);
     let mut scene = grey(&triangles, 0.7);
     scene.materials.push(Material { transmittance, reflectance: 0.1, ..scene.materials[0].clone() });
     scene.mesh.material_of[12..].fill(1);
@@ -76,7 +76,7 @@ fn the_walls_of_a_closed_room_receive_flux_over_absorption() {
 
 #[test]
 fn along_a_duct_light_falls_as_the_difference_equation_says() {
-    let (side_m, reflectance) = (1.0, 0.6);
+    let (side_m, reflectance) = (1.0_f64, 0.6_f64);
     let scene = grey(&boxed(LIGHT_M - 0.5, LIGHT_M + Vec3::new(11.5, 0.5, 0.5)), reflectance as f32);
     let model = model_of(&scene);
     let circuit = circuit(&model);
@@ -109,7 +109,7 @@ fn a_room_behind_a_small_opening_gets_what_comes_through_it() {
             .map(|(y, z)| Vec3::new(3.0, y, z));
         triangles.extend([[a, b, c], [a, c, d]]);
     }
-    let reflectance = 0.8;
+    let reflectance = 0.8_f64;
     let mut scene = grey(&triangles, reflectance as f32);
     // Far from the hole's beam: the lit room's lamp does not see these.
     let at = |x: f32| sensor(Vec3::new(x, 0.4, 0.4), None);
@@ -189,7 +189,7 @@ fn shares_of_the_lights_add_up_to_the_whole() {
 #[test]
 fn a_pane_lets_its_share_of_the_diffuse_light_through() {
     let beyond = |transmittance: f32| {
-        let scene = Scene { sensors: vec![sensor(Vec3::new(2.5, 0.4, 0.4), None)], ..glazed(transmittance) };
+        let scene = Scene { sensors: vec![sensor(Vec3::new(7.5, 0.4, 0.4), None)], ..glazed(transmittance) };
         let model = model_of(&scene);
         field(&(scene, model), estimate).readings[0].value_w_m2
     };
