@@ -4,6 +4,8 @@
 //! warnings to stderr.
 
 mod args;
+mod chart;
+mod peer;
 mod plan;
 mod report;
 mod run;
