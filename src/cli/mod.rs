@@ -11,6 +11,7 @@ mod report;
 mod run;
 mod stages;
 mod table;
+mod tolerance;
 mod write;
 
 use crate::job::{Cancel, Cancelled};

@@ -99,7 +99,7 @@ fn draw_legend(out: &mut dyn Write, charts: &[SceneChart]) -> io::Result<()> {
     let marks: [(&str, bool, bool, f64); 4] = [
         ("scaled from fewer sensors", true, false, 5.0),
         ("best for its time", false, true, 4.5),
-        ("coarse", false, false, 6.5),
+        ("coarse voxels", false, false, 6.5),
         ("fine voxels", false, false, 3.2),
     ];
     for (says, is_scaled, is_front, half) in marks {

@@ -16,6 +16,9 @@ pub const HEIGHT: f64 = 330.0;
 /// The strip along the upper border where points without a finite error stand.
 const LOST: f64 = 30.0;
 
+/// A tick this near to an end of its axis has its name beside it, not under it.
+const END_TICK: f64 = 20.0;
+
 /// Font size of labels beside points.
 const SMALL: f64 = 11.0;
 
@@ -84,11 +87,17 @@ impl Panel<'_> {
         for (_, at) in &factors {
             writeln!(out, r#"<line x1="{left:.1}" y1="{at:.1}" x2="{right:.1}" y2="{at:.1}"/>"#)?;
         }
-        writeln!(out, r##"</g><g fill="#444444" font-size="12" text-anchor="middle">"##)?;
-        // Narrow decades are named every second or third.
+        writeln!(out, r##"</g><g fill="#444444" font-size="12">"##)?;
+        // Narrow decades are named every second or third; names at the ends stay within the panel.
         let stride = ticks.len().div_ceil(7).max(1);
         for (seconds, name) in ticks.iter().step_by(stride) {
-            writeln!(out, r#"<text x="{:.1}" y="{:.1}">{name}</text>"#, x.place(*seconds), bottom + 16.0)?;
+            let at = x.place(*seconds);
+            let anchor = match at {
+                _ if at < left + END_TICK => "start",
+                _ if at > right - END_TICK => "end",
+                _ => "middle",
+            };
+            writeln!(out, r#"<text x="{at:.1}" y="{:.1}" text-anchor="{anchor}">{name}</text>"#, bottom + 16.0)?;
         }
         writeln!(out, "</g>")?;
         if self.is_first {

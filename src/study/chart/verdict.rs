@@ -2,7 +2,6 @@
 
 use super::equal::Ratio;
 use super::{Point, SENSORS, SceneChart};
-use crate::scene::Method;
 use std::fmt::Write;
 
 /// Times that are asked about, seconds.
@@ -59,21 +58,17 @@ fn winners(text: &mut String, front: &[&Point]) {
             );
         }
     }
-    let is_trace = |point: &&&Point| point.method == Method::Trace.name();
-    let best_estimate = front.iter().rev().find(|point| point.voxel_m.is_some());
-    let traced = front.iter().find(is_trace);
-    *text += &match (best_estimate, traced) {
-        (Some(best), Some(first)) if front.last().as_ref().is_some_and(is_trace) => {
-            let says = "  below that the path tracer alone";
-            format!(
-                "  the best estimate: {}, {}\n{says}, from {} s on\n",
-                best.label(),
-                error(best),
-                seconds(first.total_seconds())
-            )
-        }
-        (Some(_), _) => "  no path-traced point in the chart is better than the best estimate\n".to_owned(),
-        (None, Some(_)) => "  no estimate stands on the front: the path tracer wins everywhere\n".to_owned(),
+    let best_estimate = front.iter().rposition(|point| point.voxel_m.is_some());
+    let beyond = front.get(best_estimate.map_or(0, |best| best + 1));
+    *text += &match (best_estimate.and_then(|best| front.get(best)), beyond) {
+        (Some(best), Some(first)) => format!(
+            "  the best estimate: {}, {}; below that path tracing alone, from {} s on\n",
+            best.label(),
+            error(best),
+            seconds(first.total_seconds())
+        ),
+        (Some(_), None) => "  no path-traced point in the chart is better than the best estimate\n".to_owned(),
+        (None, Some(_)) => "  no estimate stands on the front: path tracing wins everywhere\n".to_owned(),
         (None, None) => "  no method has a finite error\n".to_owned(),
     };
 }
@@ -137,7 +132,7 @@ mod tests {
             "within 0.01 s: forward, 0.1 m, rms factor 5.000 (0.004 s)",
             "within 1 s: network, 0.1 m, rms factor 1.100 (0.5 s)",
             "within 10,000 s: trace, rms factor 1.050 (1,600 s)",
-            "below that the path tracer alone, from 1,600 s on",
+            "below that path tracing alone, from 1,600 s on",
             "the path tracer takes 800 times as long as network, 0.1 m",
         ] {
             assert!(text.contains(line), "{line}\n{text}");
