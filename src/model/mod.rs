@@ -13,9 +13,9 @@ use crate::light::{Aim, Emitter, Sampler, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
-use crate::space::VoxelIndex;
+use crate::space::{Lattice, VoxelIndex};
 use crate::voxel::seeds::{self, Ground, Lost, Place};
-use crate::voxel::{VoxelError, Voxels, voxelise};
+use crate::voxel::{VoxelError, Voxels, voxelise, voxelise_on};
 use glam::Vec3;
 use petgraph::graph::NodeIndex;
 use rayon::prelude::*;
@@ -92,11 +92,38 @@ impl Model {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<Self, ModelError> {
+        Self::voxelised(scene, rays, progress, cancel, |rays, patches| {
+            voxelise(scene, rays, patches, voxel_m, max_bytes, progress, cancel)
+        })
+    }
+
+    /// The same on a lattice of one's own, as [`voxelise_on`].
+    ///
+    /// # Errors
+    /// [`ModelError::Cancelled`].
+    pub fn build_on(
+        lattice: Lattice,
+        scene: &Scene,
+        rays: Arc<Rays>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, ModelError> {
+        Self::voxelised(scene, rays, progress, cancel, |rays, patches| {
+            voxelise_on(lattice, scene, rays, patches, progress, cancel)
+        })
+    }
+
+    fn voxelised(
+        scene: &Scene,
+        rays: Arc<Rays>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+        voxelise: impl FnOnce(&Rays, &[Place]) -> Result<Voxels, VoxelError>,
+    ) -> Result<Self, ModelError> {
         let sources = Sources::of(scene);
 
         progress.begin("voxels", 0);
-        let patches = places_of_patches(scene, &sources);
-        let voxels = voxelise(scene, &rays, &patches, voxel_m, max_bytes, progress, cancel)?;
+        let voxels = voxelise(&rays, &places_of_patches(scene, &sources))?;
         progress.end();
 
         progress.begin("skeleton", 0);
