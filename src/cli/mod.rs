@@ -8,6 +8,7 @@ mod plan;
 mod report;
 mod run;
 mod stages;
+mod stress;
 mod table;
 mod write;
 

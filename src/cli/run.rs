@@ -4,6 +4,7 @@ use super::args::{Args, Command, Common};
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::stages::{Stages, available_bytes};
+use super::stress;
 use super::tell;
 use super::write::{self, Analysed, Folder};
 use crate::export;
@@ -30,6 +31,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
         Command::Analyse { common, method } => run_analyse(&common, method, cancel),
         Command::Compare { common, methods, spp } => run_compare(&common, &methods, spp, cancel),
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
+        Command::Stress(args) => stress::run(&args, cancel),
     }
 }
 
@@ -168,9 +170,17 @@ fn open(
 /// Share of the memory at hand that voxels and skeleton may take; the rest is for rays, fields and the system.
 const MEMORY_SHARE: f64 = 0.8;
 
+/// What voxels and skeleton may take, bytes.
+pub fn max_bytes() -> u64 {
+    available_bytes().map_or(u64::MAX, |bytes| (bytes as f64 * MEMORY_SHARE) as u64)
+}
+
 /// Voxels and skeleton, at the size asked for or one that is chosen; a bare mesh gets its light. Gives all warnings so far.
-fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> Result<(Model, Vec<String>)> {
-    let max_bytes = available_bytes().map_or(u64::MAX, |bytes| (bytes as f64 * MEMORY_SHARE) as u64);
+///
+/// # Errors
+/// A grid that does not fit, or an interrupt.
+pub fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> Result<(Model, Vec<String>)> {
+    let max_bytes = max_bytes();
     stages.begin("rays", 0);
     let rays = Arc::new(Rays::new(scene));
     stages.end();
@@ -239,14 +249,17 @@ fn traced_reference(
 }
 
 /// Warnings on stderr, a line each.
-fn warn(warnings: &[String]) {
+pub fn warn(warnings: &[String]) {
     for warning in warnings {
         tell(format_args!("warning: {warning}"));
     }
 }
 
 /// Text on stdout.
-fn say(text: &str) -> Result<()> {
+///
+/// # Errors
+/// What the writer says.
+pub fn say(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)

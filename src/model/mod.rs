@@ -79,6 +79,13 @@ pub enum ModelError {
     Cancelled(#[from] Cancelled),
 }
 
+impl ModelError {
+    /// Whether the run was stopped, rather than the scene refused.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Cancelled(_) | Self::Voxel(VoxelError::Cancelled(_)))
+    }
+}
+
 impl Model {
     /// Models a scene with voxels of `voxel_m` metres, taking at most `max_bytes` for voxels and skeleton.
     ///

@@ -1,4 +1,5 @@
-//! How good is an estimate, and beside what?
+//! How good is an estimate, and beside what? How far does it move when nothing should move it?
 
 pub mod compare;
 pub mod errors;
+pub mod stress;
