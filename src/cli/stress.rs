@@ -53,6 +53,7 @@ struct Figures {
     p95_factor: Option<f64>,
     max_factor: Option<f64>,
     p95_angle_deg: Option<f64>,
+    max_angle_deg: Option<f64>,
     lost: usize,
     phantom: usize,
 }
@@ -134,6 +135,7 @@ fn report<'a>(trials: &Trials, rows: &'a [Row], seconds: f64) -> Stress<'a> {
         p95_factor: finite(spread.p95()),
         max_factor: finite(spread.max()),
         p95_angle_deg: spread.angle_p95_deg(),
+        max_angle_deg: spread.angle_max_deg(),
         lost: spread.lost,
         phantom: spread.phantom,
     };
@@ -160,7 +162,8 @@ fn in_words(rows: &[Row], seconds: f64) -> String {
         "method",
         "moved 95%",
         "max",
-        "angle",
+        "angle 95%",
+        "max",
         "truth rms",
         "95%",
         "max",
@@ -187,7 +190,8 @@ fn in_words(rows: &[Row], seconds: f64) -> String {
             row.method.clone(),
             factor(row.moved.p95()),
             factor(row.moved.max()),
-            row.moved.angle_p95_deg().map_or_else(|| "-".to_owned(), |angle| format!("{angle:.0} deg")),
+            degrees(row.moved.angle_p95_deg()),
+            degrees(row.moved.angle_max_deg()),
             factor(row.truth.rms()),
             factor(row.truth.p95()),
             factor(row.truth.max()),
@@ -199,6 +203,10 @@ fn in_words(rows: &[Row], seconds: f64) -> String {
     }
     let listed = warnings.iter().enumerate().map(|(number, warning)| format!("[{}] {warning}\n", number + 1));
     format!("{table}\n{}\n{seconds:.1} s\n", listed.collect::<String>())
+}
+
+fn degrees(angle: Option<f64>) -> String {
+    angle.map_or_else(|| "-".to_owned(), |angle| format!("{angle:.0} deg"))
 }
 
 /// A factor to three digits; a zero beside light has an infinite one.

@@ -3,7 +3,7 @@
 use crate::study::stress::{Row, Statuses};
 use std::io::{self, Write};
 
-const HEADER: [&str; 22] = [
+const HEADER: [&str; 23] = [
     "scene",
     "failure",
     "case",
@@ -12,6 +12,7 @@ const HEADER: [&str; 22] = [
     "moved_p95",
     "moved_max",
     "moved_angle_p95_deg",
+    "moved_angle_max_deg",
     "vanished",
     "truths",
     "truth_rms",
@@ -47,6 +48,7 @@ pub fn write_csv(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
             figure(moved.p95()),
             figure(moved.max()),
             figure(moved.angle_p95_deg()),
+            figure(moved.angle_max_deg()),
             (moved.lost + moved.phantom).to_string(),
         ];
         let truths = [
@@ -78,6 +80,6 @@ mod tests {
         write_csv(&mut out, &[row]).expect("a vector takes all");
         let text = String::from_utf8(out).expect("text");
         let last = text.lines().last().expect("a row");
-        assert_eq!(last, "\"a, b\",turn,8 turns,backward,2,2.0000,2.0000,,0,0,,,,,0,0,0,0,0,0,0,");
+        assert_eq!(last, "\"a, b\",turn,8 turns,backward,2,2.0000,2.0000,,,0,0,,,,,0,0,0,0,0,0,0,");
     }
 }

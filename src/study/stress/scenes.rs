@@ -116,13 +116,20 @@ fn rooms_with_hole(side_m: f32) -> (Boxes, Vec<Sensor>) {
     (boxes, sensors)
 }
 
-/// A square ring of a corridor; sensors a quarter of a voxel apart, across the place where both ways round are equal.
+/// A square ring of a corridor; sensors a quarter of a voxel apart, across the place where both ways round are equal: like
+/// each other, and then one of them through a narrow place.
 fn ties(voxel_m: f32) -> Vec<Built> {
-    let ring = Boxes::default().void([0.0; 3], [8.0, 8.0, HIGH_M]).solid([1.6, 1.6, 0.0], [6.4, 6.4, HIGH_M]);
-    let built = [("the light in the middle", 4.0), ("the light aside", 3.43)].map(|(case, light_x)| {
-        let tie_x = 8.0 - light_x;
-        let sensors = (-20..=20).map(|step| scalar(at([tie_x + 0.25 * voxel_m * step as f32, 7.17, 1.21])));
-        built(Failure::Tie, case, ring.clone(), &[[light_x, 0.83, 1.61]], sensors.collect(), 4)
+    let ring = Boxes::default().void([0.0; 3], [6.0, 6.0, HIGH_M]).solid([1.6, 1.6, 0.0], [4.4, 4.4, HIGH_M]);
+    let narrow = ring.clone().solid([0.0, 2.5, 0.0], [1.1, 3.5, HIGH_M]);
+    let cases = [
+        ("ways alike, the light in the middle", &ring, 3.0),
+        ("ways alike, the light aside", &ring, 2.43),
+        ("one way narrow", &narrow, 3.0),
+    ];
+    let built = cases.map(|(case, boxes, light_x)| {
+        let tie_x = 6.0 - light_x;
+        let sensors = (-20..=20).map(|step| scalar(at([tie_x + 0.25 * voxel_m * step as f32, 5.17, 1.21])));
+        built(Failure::Tie, case, boxes.clone(), &[[light_x, 0.83, 1.61]], sensors.collect(), 8)
     });
     built.into()
 }
@@ -147,11 +154,12 @@ fn dark_rooms() -> Built {
     let mut boxes = Boxes::default();
     let mut sensors = Vec::new();
     for room in 0..5 {
-        let [from, to] = [3.2 * room as f32, 3.2 * room as f32 + 3.0];
+        let [from, next] = [room, room + 1].map(|room| 3.2 * room as f32);
+        let to = next - 0.2;
         boxes = boxes.void([from, 0.0, 0.0], [to, 3.0, HIGH_M]);
         if room < 4 {
             let y = if room % 2 == 0 { 0.2 } else { 1.9 };
-            boxes = boxes.void([to, y, 0.0], [to + 0.2, y + 0.9, 2.0]);
+            boxes = boxes.void([to, y, 0.0], [next, y + 0.9, 2.0]);
         }
         sensors.push(scalar(at([from + 1.57, 1.43, 0.97])));
     }

@@ -49,6 +49,11 @@ impl Spread {
         percentile(&self.angles_deg, 0.95)
     }
 
+    /// The greatest angle, degrees; `None` where there are none.
+    pub fn angle_max_deg(&self) -> Option<f64> {
+        percentile(&self.angles_deg, 1.0)
+    }
+
     /// One more answer, and the value and net flux that it is held against.
     pub fn add(&mut self, reading: &Reading, value_w_m2: f64, flux_w_m2: glam::DVec3) {
         let answer_w_m2 = reading.value_w_m2;
