@@ -3,7 +3,7 @@
 use crate::study::stress::{Row, Statuses};
 use std::io::{self, Write};
 
-const HEADER: [&str; 23] = [
+const HEADER: [&str; 25] = [
     "scene",
     "failure",
     "case",
@@ -13,6 +13,8 @@ const HEADER: [&str; 23] = [
     "moved_max",
     "moved_angle_p95_deg",
     "moved_angle_max_deg",
+    "worst_sensor",
+    "worst_trial",
     "vanished",
     "truths",
     "truth_rms",
@@ -30,7 +32,7 @@ const HEADER: [&str; 23] = [
 ];
 
 /// Writes the rows: `moved_*` are factors between disturbed and undisturbed answers, `truth_*` between answers and the truth
-/// (`moves` and `truths` say of how many; an infinite one is `inf`), `vanished` the answers that are zero on one side of a
+/// (`moves` and `truths` say of how many; an infinite one is `inf`), `worst_*` are where the most moved, `vanished` the answers that are zero on one side of a
 /// move alone, `lost` zeros where there is light, `phantom` light where there is none, then sensors by status.
 ///
 /// # Errors
@@ -49,6 +51,8 @@ pub fn write_csv(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
             figure(moved.max()),
             figure(moved.angle_p95_deg()),
             figure(moved.angle_max_deg()),
+            row.worst().map(|(sensor, _)| sensor.to_owned()).unwrap_or_default(),
+            row.worst().map(|(_, trial)| trial.to_string()).unwrap_or_default(),
             (moved.lost + moved.phantom).to_string(),
         ];
         let truths = [
@@ -70,16 +74,18 @@ pub fn write_csv(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
     use crate::study::stress::Failure;
 
     #[test]
     fn a_row_has_a_field_for_each_name() {
-        let mut row = Row::new("a, b", Failure::Turn, "8 turns", "backward");
+        let mut row =
+            Row::new(&Scene { name: "a, b".into(), ..Scene::default() }, Failure::Turn, "8 turns", "backward");
         row.moved.factors = vec![1.0, 2.0];
         let mut out = Vec::new();
         write_csv(&mut out, &[row]).expect("a vector takes all");
         let text = String::from_utf8(out).expect("text");
         let last = text.lines().last().expect("a row");
-        assert_eq!(last, "\"a, b\",turn,8 turns,backward,2,2.0000,2.0000,,,0,0,,,,,0,0,0,0,0,0,0,");
+        assert_eq!(last, "\"a, b\",turn,8 turns,backward,2,2.0000,2.0000,,,,,0,0,,,,,0,0,0,0,0,0,0,");
     }
 }

@@ -190,11 +190,12 @@ fn colour(method: usize) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     #[test]
     fn scenes_share_a_strip_and_every_dot_is_on_the_sheet() {
         let row = |scene: &str, method: &str, factors: &[f64]| {
-            let mut row = Row::new(scene, Failure::Turn, "8 turns", method);
+            let mut row = Row::new(&Scene { name: scene.into(), ..Scene::default() }, Failure::Turn, "8 turns", method);
             row.moved.factors = factors.to_vec();
             row
         };

@@ -84,8 +84,7 @@ impl Patches {
         let point_m2 = model.walls.area_m2() / tried;
 
         found.sort_by_key(|(kind, _)| *kind);
-        let mut patches =
-            Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
+        let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
         for side in found.chunk_by(|a, b| a.0 == b.0) {
             patches.add(side, point_m2, quality.lines);
         }
@@ -119,9 +118,11 @@ impl Patches {
     fn fill_kinds(&mut self) {
         for kinds in self.of_kind.chunks_mut(KINDS) {
             let area_m2 = |patch: u32| self.list.get(patch as usize).map_or(0.0, |patch| patch.area_m2);
-            let largest = kinds.iter().copied().filter(|&patch| patch != NONE).max_by(|&a, &b| {
-                area_m2(a).total_cmp(&area_m2(b)).then(b.cmp(&a))
-            });
+            let largest = kinds
+                .iter()
+                .copied()
+                .filter(|&patch| patch != NONE)
+                .max_by(|&a, &b| area_m2(a).total_cmp(&area_m2(b)).then(b.cmp(&a)));
             kinds.iter_mut().filter(|patch| **patch == NONE).for_each(|patch| *patch = largest.unwrap_or(NONE));
         }
     }
@@ -129,8 +130,8 @@ impl Patches {
     /// The patch of a point on a wall, its normal on the side that was hit, by a ray that came along `direction`. `None`
     /// where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3) -> Option<u32> {
-        let node = before_wall(model, hit.position_m, hit.normal)
-            .or_else(|| back_along(model, hit.position_m, direction))?;
+        let node =
+            before_wall(model, hit.position_m, hit.normal).or_else(|| back_along(model, hit.position_m, direction))?;
         let kind = kind(zones.at(node, hit.position_m), hit.normal, hit.answer);
         self.of_kind.get(kind as usize).copied().filter(|&patch| patch != NONE)
     }

@@ -25,7 +25,7 @@ pub fn stress_built_in(voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancelled
 fn rows_of(built: &Built, voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancelled> {
     let Built { failure, case, scene, samples_times } = built;
     let names = asked.contestants.iter().map(|contestant| &contestant.name);
-    let mut rows: Vec<Row> = names.map(|name| Row::new(&scene.name, *failure, case, name)).collect();
+    let mut rows: Vec<Row> = names.map(|name| Row::new(scene, *failure, case, name)).collect();
     let model = match asked.model(scene, scene.model.voxel_m.unwrap_or(voxel_m)) {
         Ok(model) => model,
         Err(error) => return not_modelled(&mut rows, &error).map(|()| rows),

@@ -161,7 +161,7 @@ impl Undisturbed<'_> {
     /// A row a method, without figures yet.
     fn rows(&self, failure: Failure, case: &str) -> Vec<Row> {
         let names = self.asked.contestants.iter().map(|contestant| &contestant.name);
-        names.map(|name| Row::new(&self.scene.name, failure, case, name)).collect()
+        names.map(|name| Row::new(self.scene, failure, case, name)).collect()
     }
 
     /// One disturbed model: what each method says of it goes into its row, as `restored` gives it back.

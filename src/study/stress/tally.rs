@@ -5,7 +5,7 @@
 
 use super::Failure;
 use crate::light::{Field, Reading, Status};
-use crate::scene::Reference;
+use crate::scene::{Reference, Scene};
 use crate::study::errors::is_good;
 use serde::Serialize;
 
@@ -132,6 +132,8 @@ impl Statuses {
 pub struct Row {
     /// The scene's name.
     pub scene: String,
+    /// The names of its sensors.
+    pub sensors: Vec<String>,
     /// What was tried.
     pub failure: Failure,
     /// With which parameter: `noise of 0.5 voxel`.
@@ -150,10 +152,28 @@ pub struct Row {
 
 impl Row {
     /// A row without any answer yet.
-    pub fn new(scene: &str, failure: Failure, case: &str, method: &str) -> Self {
-        let [scene, case, method] = [scene, case, method].map(str::to_owned);
-        let [moved, truth] = [Spread::default(), Spread::default()];
-        Self { scene, failure, case, method, moved, truth, statuses: Statuses::default(), warnings: Vec::new() }
+    pub fn new(scene: &Scene, failure: Failure, case: &str, method: &str) -> Self {
+        let [name, case, method] = [&scene.name, case, method].map(str::to_owned);
+        Self {
+            scene: name,
+            sensors: scene.sensors.iter().map(|sensor| sensor.id.clone()).collect(),
+            failure,
+            case,
+            method,
+            moved: Spread::default(),
+            truth: Spread::default(),
+            statuses: Statuses::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Where an answer moved the most: the sensor, and the number of the trial that was modelled, from 1. `None` where none
+    /// moved.
+    pub fn worst(&self) -> Option<(&str, usize)> {
+        let most = self.moved.max().filter(|&most| most > 1.0)?;
+        let number = self.moved.factors.iter().position(|&factor| factor == most)?;
+        let sensor = self.sensors.get(number % self.sensors.len())?;
+        Some((sensor, 1 + number / self.sensors.len()))
     }
 
     /// One more trial: a field, the readings before it, and the truth.
@@ -224,8 +244,18 @@ mod tests {
     }
 
     #[test]
+    fn the_worst_is_a_sensor_in_a_trial() {
+        let sensor = |id: &str| crate::scene::Sensor { id: id.into(), position_m: glam::Vec3::ZERO, normal: None };
+        let scene = Scene { sensors: vec![sensor("a"), sensor("b")], ..Scene::default() };
+        let mut row = Row::new(&scene, Failure::Turn, "", "backward");
+        assert_eq!(row.worst(), None);
+        row.moved.factors = vec![1.0, 1.1, 1.2, 1.9, 1.0, 1.3];
+        assert_eq!(row.worst(), Some(("b", 2)));
+    }
+
+    #[test]
     fn a_warning_is_said_once_whatever_its_figures() {
-        let mut row = Row::new("a", Failure::Turn, "", "backward");
+        let mut row = Row::new(&Scene::default(), Failure::Turn, "", "backward");
         let said =
             ["1 opening closes near 0.3".to_owned(), "2 opening closes near 0.5".to_owned(), "it leaks".to_owned()];
         row.warn(&said, &["it leaks".to_owned()]);
