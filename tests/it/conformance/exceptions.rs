@@ -1,0 +1,42 @@
+//! Which method does not obey which law, by design, and why.
+
+use lightvein::scene::Method::{self, Backward, Forward, Trace};
+
+const NO_REFLECTANCE: &str = "the poster's heuristics do not know reflectance: what walls send back is no part of them";
+const POINT_LIKE: &str = "the poster's heuristics read every light as a point that shines evenly all around";
+
+/// Law, method, reason. A method that obeys after all fails: exceptions do not outlive their reason.
+pub const EXCEPTIONS: &[(&str, Method, &str)] = &[
+    ("shares sum to the value", Backward, "it adds lights up as it goes and does not tell them apart"),
+    ("shares sum to the value", Forward, "it adds lights up as it goes and does not tell them apart"),
+    ("shares sum to the value", Trace, "the truth is one sum"),
+    ("nothing outshines the light", Backward, POINT_LIKE),
+    ("nothing outshines the light", Forward, POINT_LIKE),
+    (
+        "statuses",
+        Trace,
+        "it knows neither void nor matter: what gets no light is dark, a sensor in matter sees its inside",
+    ),
+    ("no light", Trace, "it knows no void that could be unreached"),
+    ("glazing", Forward, "it carries flux along the skeleton, where glazing takes no share"),
+    ("black is direct", Backward, NO_REFLECTANCE),
+    ("black is direct", Forward, NO_REFLECTANCE),
+    ("monotone", Backward, NO_REFLECTANCE),
+    ("monotone", Forward, NO_REFLECTANCE),
+    ("white", Backward, "without reflectance there is nothing to warn of"),
+    ("white", Forward, "without reflectance there is nothing to warn of"),
+    ("white", Trace, "roulette ends its paths, and its warnings are of samples"),
+    ("furnace", Backward, NO_REFLECTANCE),
+    ("furnace", Forward, NO_REFLECTANCE),
+    ("coupled spheres", Backward, NO_REFLECTANCE),
+    ("coupled spheres", Forward, NO_REFLECTANCE),
+    ("bright tube", Backward, NO_REFLECTANCE),
+    ("bright tube", Forward, NO_REFLECTANCE),
+    ("grey tube", Backward, NO_REFLECTANCE),
+    ("grey tube", Forward, NO_REFLECTANCE),
+];
+
+/// Why the method need not obey the law of that name; `None` where it must.
+pub fn exception(law: &str, method: Method) -> Option<&'static str> {
+    EXCEPTIONS.iter().find(|(of, by, _)| *of == law && *by == method).map(|(.., reason)| *reason)
+}
