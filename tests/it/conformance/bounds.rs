@@ -24,8 +24,10 @@ pub const SOUND: Law = Law {
         let case = Case::of(scene);
         for (at, reading) in subject.field(&case).readings.iter().enumerate() {
             sound(breaches, case.id(at), reading);
-            breaches.unless(reading.status == Status::Ok, || format!("{}: {:?}", case.id(at), reading.status));
-            let Some(normal) = case.scene.sensors[at].normal else { continue };
+            let Some(normal) = case.scene.sensors[at].normal else {
+                breaches.unless(reading.status == Status::Ok, || format!("{}: {:?}", case.id(at), reading.status));
+                continue;
+            };
             // A plane's value is the integral of L w.n, and its flux that of L w, over the same hemisphere.
             let along = reading.flux_w_m2.dot(normal.as_dvec3());
             breaches.unless_within(
