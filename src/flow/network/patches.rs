@@ -11,6 +11,7 @@ use super::zones::Zones;
 use crate::flow::sequence;
 use crate::model::Model;
 use crate::model::walls::{Answer, WallPoint};
+use crate::rays::Surface;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -130,6 +131,7 @@ impl Patches {
     /// where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3) -> Option<u32> {
         let node = before_wall(model, hit.position_m, hit.normal)
+            .map(|(node, _)| node)
             .or_else(|| back_along(model, hit.position_m, direction))?;
         let kind = kind(zones.at(node, hit.position_m), hit.normal, hit.answer);
         self.of_kind.get(kind as usize).copied().filter(|&patch| patch != NONE)
@@ -145,7 +147,12 @@ fn points(model: &Model, zones: &Zones, count: u32, seed: u64) -> Vec<(u32, Star
         let side = move |normal: Vec3| {
             let WallPoint { triangle, position_m, .. } = point?;
             let answer = model.walls.answers.get(triangle as usize).copied().unwrap_or_default();
-            let node = before_wall(model, position_m, normal)?;
+            let (node, out_m) = before_wall(model, position_m, normal)?;
+            // The void behind a thin wall is not before its inner side.
+            let lifted_m = position_m + normal * model.rays.epsilon_m();
+            if model.rays.closest(lifted_m, normal, out_m).is_some_and(|hit| !is_pane(model, hit.surface)) {
+                return None;
+            }
             Some((kind(zones.at(node, position_m), normal, answer), Start { position_m, normal, answer }))
         };
         let normal = point.map_or(Vec3::Z, |point| point.normal);
@@ -154,11 +161,19 @@ fn points(model: &Model, zones: &Zones, count: u32, seed: u64) -> Vec<(u32, Star
     (0..count).into_par_iter().flat_map_iter(sides).collect()
 }
 
-/// The node of the void before a wall.
-fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<u32> {
+/// The node of the void before a wall, and how far out it begins at most, metres.
+fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<(u32, f32)> {
     let lattice = &model.voxels.lattice;
-    let node = |out: f32| model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * (out * lattice.voxel_m)));
+    let node = |out: f32| {
+        let out_m = out * lattice.voxel_m;
+        Some((model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * out_m))?, out_m))
+    };
     STEPS_OUT_VOXELS.into_iter().find_map(node)
+}
+
+/// Whether light passes straight through a surface.
+fn is_pane(model: &Model, surface: Surface) -> bool {
+    model.walls.answer(surface).passes > 0.0
 }
 
 /// The node of the void that a ray left before it came to a point.
