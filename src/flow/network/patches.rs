@@ -85,8 +85,7 @@ impl Patches {
         let point_m2 = model.walls.area_m2() / tried;
 
         found.sort_by_key(|(kind, _)| *kind);
-        let mut patches =
-            Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
+        let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
         for side in found.chunk_by(|a, b| a.0 == b.0) {
             patches.add(side, point_m2, quality.lines);
         }
@@ -120,9 +119,11 @@ impl Patches {
     fn fill_kinds(&mut self) {
         for kinds in self.of_kind.chunks_mut(KINDS) {
             let area_m2 = |patch: u32| self.list.get(patch as usize).map_or(0.0, |patch| patch.area_m2);
-            let largest = kinds.iter().copied().filter(|&patch| patch != NONE).max_by(|&a, &b| {
-                area_m2(a).total_cmp(&area_m2(b)).then(b.cmp(&a))
-            });
+            let largest = kinds
+                .iter()
+                .copied()
+                .filter(|&patch| patch != NONE)
+                .max_by(|&a, &b| area_m2(a).total_cmp(&area_m2(b)).then(b.cmp(&a)));
             kinds.iter_mut().filter(|patch| **patch == NONE).for_each(|patch| *patch = largest.unwrap_or(NONE));
         }
     }

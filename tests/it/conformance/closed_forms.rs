@@ -65,7 +65,7 @@ pub const FURNACE: Law = Law {
         for reflectance in [0.3_f32, 0.5, 0.8, 0.99] {
             let lights = vec![point(Vec3::new(1.90625, 1.40625, 1.28125), flux_w)];
             let case = Case::of(scene_of(room(size), reflectance, lights, sensors.clone()));
-            let readings = subject.field_with(&case, &Settings { samples: 128, ..settings() }).readings;
+            let readings = subject.field_with(&case, &Settings { samples: 48, ..settings() }).readings;
             let (found, noise) = mean(subject, &readings, &areas_m2);
             let expected = flux_w / (area_m2 * (1.0 - f64::from(reflectance)));
             // Beside noise, the grid of sensors is 1% off in the direct light.
@@ -82,22 +82,22 @@ pub const SPHERES: Law = Law {
     name: "coupled spheres",
     test: |subject, breaches| {
         let count = 160;
-        for reflectance in [0.5_f32, 0.8, 0.95] {
+        for reflectance in [0.5_f32, 0.8] {
             let [first, second] = [0, 1].map(|sphere| sensors(sphere, count));
             let scene = scene_of(spheres(), reflectance, vec![lamp(50.0)], [first, second].concat());
             let case = Case::at(scene, 0.1);
-            let readings = subject.field_with(&case, &Settings { samples: 512, ..settings() }).readings;
+            let readings = subject.field_with(&case, &Settings { samples: 96, ..settings() }).readings;
             let expected = mean_irradiances(50.0, f64::from(reflectance));
-            for sphere in 0..2 {
+            for (sphere, expected) in expected.into_iter().enumerate() {
                 let some = readings.get(sphere * count..(sphere + 1) * count).unwrap_or_default();
                 let (found, noise) = mean(subject, some, &vec![1.0; count]);
                 // Beyond the port `diffusion` is no result below .7.
                 let diffusion = if sphere == 1 && reflectance < 0.7 { 3.0 } else { 1.3 };
                 let allowed = Allowed { control: 1.02, diffusion, other: 1.1 }.of(subject.method);
-                let ratio = found / expected[sphere];
-                let slack = noise / expected[sphere];
+                let ratio = found / expected;
+                let slack = noise / expected;
                 breaches.unless(ratio <= allowed + slack && ratio >= 1.0 / allowed - slack, || {
-                    format!("reflectance {reflectance}, sphere {}: {found} W/m2, not {}", sphere + 1, expected[sphere])
+                    format!("reflectance {reflectance}, sphere {}: {found} W/m2, not {}", sphere + 1, expected)
                 });
             }
         }
@@ -155,7 +155,7 @@ pub const GREY_TUBE: Law = Law {
 
 fn in_tube(subject: &Subject, breaches: &mut Breaches, reflectance: f32, allowed: &Allowed) {
     let case = Case::at(tube(reflectance), 0.2);
-    let settings = Settings { samples: 16_384, ..settings() };
+    let settings = Settings { samples: 6144, ..settings() };
     let exact = Tube::new(TUBE_LENGTH, f64::from(reflectance));
     let readings = subject.field_with(&case, &settings).readings;
     breaches.unless(readings.len() == ASKED.len(), || format!("{} readings", readings.len()));

@@ -14,6 +14,7 @@ mod coupled_spheres;
 mod cylinder;
 mod determinism;
 mod exceptions;
+mod exchange;
 mod linearity;
 mod mutants;
 mod reflectance;
