@@ -20,6 +20,8 @@ mod mutants;
 mod reflectance;
 mod statuses;
 mod symmetry;
+mod truth;
+mod tube;
 
 use cases::Case;
 use exceptions::exception;
@@ -136,7 +138,7 @@ fn check(law: &Law) {
     let mut excused: Vec<(Method, bool)> = Vec::new();
     for subject in subjects() {
         let Breaches(of_subject) = breaches(law, &subject);
-        let Some(reason) = exception(law.name, subject.method) else {
+        let Some(reason) = exception(law.name, subject.method.name()) else {
             found.extend(of_subject.iter().map(|breach| format!("{}: {breach}", subject.label)));
             continue;
         };
@@ -193,8 +195,10 @@ laws! {
     a_raised_flag_stops_at_once: determinism::CANCELLED,
     a_closed_room_has_its_flux_over_what_it_absorbs: closed_forms::FURNACE,
     two_spheres_exchange_by_their_port: closed_forms::SPHERES,
-    a_bright_tube_has_its_radiosity: closed_forms::BRIGHT_TUBE,
-    a_grey_tube_has_its_radiosity: closed_forms::GREY_TUBE,
+    a_bright_tube_has_its_radiosity: tube::BRIGHT_TUBE,
+    a_grey_tube_has_its_radiosity: tube::GREY_TUBE,
+    two_rooms_are_as_the_path_tracer_has_them: truth::TRUTH,
+    who_is_lost_says_so: tube::CANDID,
 }
 
 #[test]

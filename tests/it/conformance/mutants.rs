@@ -3,7 +3,7 @@
 use super::cases::Case;
 use super::{
     Law, Subject, bodies, bounds, breaches, closed_forms, control, determinism, linearity, reflectance, statuses,
-    subjects, symmetry,
+    subjects, symmetry, truth, tube,
 };
 use lightvein::job::{Cancel, Progress, Quiet};
 use lightvein::light::{Field, Reading, Settings, Status};
@@ -123,10 +123,16 @@ const MUTANTS: &[Mutant] = &[
         let half = field.readings.len() / 2;
         each(field, |at, it| times(it, if at < half { 1.0 } else { 1.15 }));
     }),
-    ("a tube that falls too fast", Method::Trace, closed_forms::GREY_TUBE, |field, case, _| {
+    ("a tube that falls too fast", Method::Trace, tube::GREY_TUBE, |field, case, _| {
         each(field, |at, it| times(it, (-0.05 * f64::from(case.scene.sensors[at].position_m.x)).exp()));
     }),
-    ("a tube that falls too slowly", Method::Trace, closed_forms::BRIGHT_TUBE, |field, case, _| {
+    ("a door half as wide", Method::Trace, truth::TRUTH, |field, _, _| {
+        each(field, |at, it| times(it, if at < 4 { 1.0 } else { 0.75 }));
+    }),
+    ("lost and silent", Method::Trace, tube::CANDID, |field, case, _| {
+        each(field, |at, it| times(it, (-0.5 * f64::from(case.scene.sensors[at].position_m.x)).exp()));
+    }),
+    ("a tube that falls too slowly", Method::Trace, tube::BRIGHT_TUBE, |field, case, _| {
         each(field, |at, it| times(it, (0.03 * f64::from(case.scene.sensors[at].position_m.x)).exp()));
     }),
 ];
