@@ -38,7 +38,6 @@ pub const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("bright tube", FORWARD, NO_REFLECTANCE),
     ("grey tube", BACKWARD, NO_REFLECTANCE),
     ("grey tube", FORWARD, NO_REFLECTANCE),
-    ("grey tube", DIFFUSION, "long dark passages are not diffusive: it is a preview below reflectance .7, and warns"),
     ("candid", BACKWARD, "that it knows no reflectance is what it is, not a state that a run could be in"),
     ("candid", FORWARD, "that it knows no reflectance is what it is, not a state that a run could be in"),
     ("truth", BACKWARD, NO_REFLECTANCE),

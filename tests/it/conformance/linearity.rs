@@ -1,16 +1,12 @@
 //! Light is linear in its sources.
 
 use super::cases::{Case, LAMPS_M, lit_rooms, point};
-use super::{Law, Subject, settings};
-use lightvein::light::{Settings, Status};
+use super::{Law, Subject, redrawn_factor, settings};
+use lightvein::light::{Reading, Settings, Status};
 
 /// Flux times two is value and flux times two: the same numbers but for the rounding of sums. A solver may stop elsewhere
 /// by no more than this.
 const ROUNDING: f64 = 1e-6;
-
-/// Rays may be dealt out among lights by their flux, so that two lights together are drawn with others than each alone; the
-/// noise of that may change values by no more than this share.
-const REDRAWN: f64 = 0.03;
 
 pub const DOUBLED: Law = Law {
     name: "doubled flux",
@@ -34,38 +30,42 @@ pub const DOUBLED: Law = Law {
     },
 };
 
+/// Rays may be dealt out among lights by their flux, so two lights together are drawn with others than each alone.
 pub const ADDED: Law = Law {
     name: "lights add",
     test: |subject, breaches| {
-        let lit = |first_w: f64, second_w: f64| {
-            let case = Case::of(lit_rooms(0.7, vec![point(LAMPS_M[0], first_w), point(LAMPS_M[1], second_w)]));
-            (subject.field(&case).readings, case)
+        let lit = |lights: &[(usize, f64)]| {
+            let lights = lights.iter().map(|&(lamp, flux_w)| point(LAMPS_M[lamp], flux_w)).collect();
+            subject.field(&Case::of(lit_rooms(0.7, lights))).readings
         };
-        // The control draws one light a sample, and its noise is that of its samples.
-        let (both, case) = lit(60.0, 25.0);
-        let (first, _) = lit(60.0, 0.0);
-        let (second, _) = lit(0.0, 25.0);
-        let alone = |flux_w: f64, lamp: usize| {
-            let case = Case::of(lit_rooms(0.7, vec![point(LAMPS_M[lamp], flux_w)]));
-            subject.field(&case).readings
-        };
-        let (first_alone, second_alone) = (alone(60.0, 0), alone(25.0, 1));
-        for (at, together) in both.iter().enumerate() {
-            for (how, a, b) in [("beside none", &first, &second), ("alone", &first_alone, &second_alone)] {
-                let sum = a[at].value_w_m2 + b[at].value_w_m2;
-                let noise = subject.noise_w_m2(&[together, &a[at], &b[at]]);
-                let off = (together.value_w_m2 - sum).abs();
-                breaches.unless(off <= REDRAWN * sum + noise, || {
-                    format!("{}: {} together, {sum} from each {how}", case.id(at), together.value_w_m2)
-                });
-                let off = together.flux_w_m2.distance(a[at].flux_w_m2 + b[at].flux_w_m2);
-                breaches.unless(off <= REDRAWN * sum + 2.0 * noise, || {
-                    format!("{}: the flux of each {how} does not add up, {off} of {sum}", case.id(at))
+        let together = lit(&[(0, 60.0), (1, 25.0)]);
+        for (how, first, second) in [
+            ("beside a dead lamp", lit(&[(0, 60.0), (1, 0.0)]), lit(&[(0, 0.0), (1, 25.0)])),
+            ("alone", lit(&[(0, 60.0)]), lit(&[(1, 25.0)])),
+        ] {
+            let sums: Vec<Reading> = first.iter().zip(&second).map(|(a, b)| added(a, b)).collect();
+            breaches.unless_redrawn(subject, &format!("together against each {how}"), &together, &sums);
+            for (at, (together, sum)) in together.iter().zip(&sums).enumerate() {
+                let off = together.flux_w_m2.distance(sum.flux_w_m2);
+                let share = 2.0 * (redrawn_factor(subject.method) - 1.0);
+                let slack = share * sum.value_w_m2 + 2.0 * subject.noise_w_m2(&[together, sum]);
+                breaches.unless(off <= slack, || {
+                    format!("sensor {at}: the flux of each {how} does not add up, {off} of {}", sum.value_w_m2)
                 });
             }
         }
     },
 };
+
+/// Two readings of one sensor by two lights, as one.
+fn added(a: &Reading, b: &Reading) -> Reading {
+    Reading {
+        value_w_m2: a.value_w_m2 + b.value_w_m2,
+        flux_w_m2: a.flux_w_m2 + b.flux_w_m2,
+        error_w_m2: a.error_w_m2.zip(b.error_w_m2).map(|(a, b)| a.hypot(b)),
+        status: if a.status == Status::Ok { a.status } else { b.status },
+    }
+}
 
 pub const SHARES: Law = Law {
     name: "shares sum to the value",
@@ -96,7 +96,8 @@ pub const SHARES: Law = Law {
             breaches.unless(row.len() == 2 && row.iter().all(|&share| share >= 0.0), || format!("shares {row:?}"));
             let expected = weak.readings[at].value_w_m2;
             let share = row.get(1).copied().unwrap_or(f64::NAN);
-            breaches.unless_within(2.0 * REDRAWN, &format!("weak light at {}", case.id(at)), share, expected);
+            let factor = redrawn_factor(subject.method);
+            breaches.unless_factor(factor, &format!("weak light at {}", case.id(at)), share, expected);
         }
     },
 };
@@ -113,17 +114,14 @@ pub const NO_FLUX: Law = Law {
         let beside = Case::of(lit_rooms(0.7, vec![point(LAMPS_M[0], 50.0), point(LAMPS_M[1], 0.0)]));
         let alone = Case::of(lit_rooms(0.7, vec![point(LAMPS_M[0], 50.0)]));
         let (beside, alone) = (subject.field(&beside).readings, subject.field(&alone).readings);
-        for (at, (beside, alone)) in beside.iter().zip(&alone).enumerate() {
-            let what = format!("beside a dead lamp, {}", case.id(at));
-            breaches.unless_within(REDRAWN, &what, beside.value_w_m2, alone.value_w_m2);
-        }
+        breaches.unless_redrawn(subject, "beside a dead lamp", &beside, &alone);
     },
 };
 
 impl Subject {
     /// Four standard errors of the control, whose readings say how noisy they are; estimators get none, for their error
     /// estimate is their own word.
-    pub fn noise_w_m2(&self, readings: &[&lightvein::light::Reading]) -> f64 {
+    pub fn noise_w_m2(&self, readings: &[&Reading]) -> f64 {
         let control = self.method == lightvein::scene::Method::Trace;
         let errors = readings.iter().filter_map(|reading| reading.error_w_m2).map(|error| error * error);
         if control { 4.0 * errors.sum::<f64>().sqrt() } else { 0.0 }

@@ -27,7 +27,7 @@ use cases::Case;
 use exceptions::exception;
 use lightvein::flow::ladder;
 use lightvein::job::{Cancel, Cancelled, Progress, Quiet};
-use lightvein::light::{Field, Settings};
+use lightvein::light::{Field, Reading, Settings};
 use lightvein::scene::Method;
 use lightvein::trace::trace;
 
@@ -56,6 +56,16 @@ impl Subject {
     /// The same with other settings.
     pub fn field_with(&self, case: &Case, settings: &Settings) -> Field {
         (self.ask)(case, settings, &Quiet, &Cancel::new()).expect("nobody cancels")
+    }
+}
+
+/// How far a value may move when its random numbers are drawn anew, a factor: what issue 3 allows a shift of the grid. Methods
+/// without random numbers get none, and the control what its own standard errors say.
+pub fn redrawn_factor(method: Method) -> f64 {
+    match method.name() {
+        "backward" | "forward" | "trace" => 1.0 + 1e-4,
+        "diffusion" => 1.3,
+        _ => 1.1,
     }
 }
 
@@ -119,6 +129,27 @@ impl Breaches {
         self.unless(holds, || format!("{what}: {found:.6e} against {expected:.6e}, {ratio:.4} is not within {factor}"));
     }
 
+    /// Notes a breach for each reading that is farther from the expected one than a new draw explains, and one where their
+    /// mean ratio is farther than half of that.
+    pub fn unless_redrawn(&mut self, subject: &Subject, what: &str, found: &[Reading], expected: &[Reading]) {
+        let factor = redrawn_factor(subject.method);
+        let (mut ratios, mut noise, count) = (0.0, 0.0, found.len() as f64);
+        for (at, (found, expected)) in found.iter().zip(expected).enumerate() {
+            let noise_w_m2 = subject.noise_w_m2(&[found, expected]);
+            ratios += found.value_w_m2 / expected.value_w_m2 / count;
+            noise += noise_w_m2 / expected.value_w_m2 / count;
+            if (found.value_w_m2 - expected.value_w_m2).abs() > noise_w_m2 {
+                let what = format!("{what}, sensor {at}");
+                self.unless_factor(factor, &what, found.value_w_m2, expected.value_w_m2);
+            }
+            self.unless(found.status == expected.status, || format!("{what}, sensor {at}: {:?}", found.status));
+        }
+        let half = 0.5 * (factor - 1.0) + noise;
+        self.unless((ratios - 1.0).abs() <= half, || {
+            format!("{what}: {ratios:.4} in the mean, not 1 within {half:.4}")
+        });
+    }
+
     /// Whether nothing was found.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -132,6 +163,9 @@ pub fn breaches(law: &Law, subject: &Subject) -> Breaches {
     breaches
 }
 
+/// Breaches of a subject that are shown.
+const MOST_SHOWN: usize = 6;
+
 /// Holds every subject to the law, and every exception from it to its word.
 fn check(law: &Law) {
     let mut found = Vec::new();
@@ -139,7 +173,9 @@ fn check(law: &Law) {
     for subject in subjects() {
         let Breaches(of_subject) = breaches(law, &subject);
         let Some(reason) = exception(law.name, subject.method.name()) else {
-            found.extend(of_subject.iter().map(|breach| format!("{}: {breach}", subject.label)));
+            found.extend(of_subject.iter().take(MOST_SHOWN).map(|breach| format!("{}: {breach}", subject.label)));
+            let more = of_subject.len().saturating_sub(MOST_SHOWN);
+            found.extend((more > 0).then(|| format!("{}: and {more} more", subject.label)));
             continue;
         };
         println!("{}: excepted from \"{}\", for {reason}; {} breaches", subject.label, law.name, of_subject.len());

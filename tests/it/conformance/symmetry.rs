@@ -9,8 +9,9 @@ use lightvein::scene::Method;
 /// A power of two scales every coordinate without rounding: all lengths are in proportion, and so must all decisions be.
 const EXACT: f64 = 1e-9;
 
-/// By whole voxels, only the epsilon of the rays changes, and some rays at edges with it.
-const SHIFT: f64 = 5e-3;
+/// By whole voxels, only the epsilon of the rays changes; of a sensor's rays, some hundred, one or two at edges may meet
+/// another wall.
+const SHIFT: f64 = 0.02;
 
 /// Mirrored or turned, ties break and samples fall the other way: the factors that issue 3 allows a rotation; for the
 /// heuristics, what their voxels allow.
@@ -28,9 +29,13 @@ fn turned_factor(method: Method) -> f64 {
 }
 
 /// The largest angle that a mirror or turn may put between directions, degrees: the median that issue 3 allows against truth.
-/// Directions of `forward` are those of steps between nodes.
+/// Directions of `forward` are those of steps between nodes, of `diffusion` those of currents along edges.
 fn turned_angle_deg(method: Method) -> f64 {
-    if method == Method::Forward { 25.0 } else { 10.0 }
+    match method.name() {
+        "forward" => 25.0,
+        "diffusion" => 20.0,
+        _ => 10.0,
+    }
 }
 
 pub const SCALED: Law = Law {
