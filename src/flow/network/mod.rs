@@ -56,8 +56,8 @@ pub struct Quality {
 impl Quality {
     /// The default.
     pub const MEDIUM: Self = Self {
-        spacing: 0.5,
-        lines: 24,
+        spacing: 0.4,
+        lines: 16,
         neck_lines: 1024,
         photons: 4096,
         shadow_rays: 16,
@@ -132,9 +132,9 @@ impl<'a> Grounds<'a> {
         Self { model, zones, patches, portals, farthest_m }
     }
 
-    /// The patch of a place on a wall that a ray along `direction` came to.
-    fn patch_at(&self, at: &Start, direction: Vec3) -> Option<u32> {
-        self.patches.at(self.model, &self.zones, at, direction)
+    /// The patch of a place on a wall that a ray of that length came to along `direction`.
+    fn patch_at(&self, at: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
+        self.patches.at(self.model, &self.zones, at, direction, length_m)
     }
 }
 
