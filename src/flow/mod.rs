@@ -10,6 +10,7 @@ pub mod direct;
 pub mod forward;
 pub mod paths;
 pub mod sequence;
+pub mod solve;
 
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Status};

@@ -7,7 +7,7 @@
 mod sampling;
 mod sources;
 
-pub use sampling::{LightSample, Sampler};
+pub use sampling::{Emission, LightSample, Sampler};
 pub use sources::Aim;
 
 use crate::scene::Light;

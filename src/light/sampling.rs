@@ -27,6 +27,17 @@ pub struct LightSample {
     pub density_per_sr: Option<f64>,
 }
 
+/// Light that leaves an emitter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Emission {
+    /// Where it starts, metres: on the emitter, lifted off its surface.
+    pub origin_m: Vec3,
+    /// Where it goes, unit length.
+    pub direction: Vec3,
+    /// Unit normal of the surface it leaves; zero for a point light.
+    pub normal: Vec3,
+}
+
 /// The emitters of a scene, ready to be drawn from.
 #[derive(Debug, Clone)]
 pub struct Sampler {
@@ -123,16 +134,53 @@ impl Sampler {
                 self.towards_face(lamp.flux_w, *area_m2, at_m, *normal, point)
             }
             Body::Patch { faces, cumulative_m2, area_m2 } => {
-                let target_m2 = random[0] * area_m2;
-                let number = cumulative_m2.partition_point(|&up_to_m2| up_to_m2 <= target_m2);
-                let number = number.min(faces.len().saturating_sub(1));
-                let ([a, b, c], up_to_m2) = (*faces.get(number)?, *cumulative_m2.get(number)?);
-                let face_m2 = 0.5 * (b - a).cross(c - a).length();
-                // What the choice of the face left of the first number is uniform again.
-                let root = ((up_to_m2 - target_m2) / face_m2).clamp(0.0, 1.0).sqrt();
-                let at_m = a + root * (1.0 - random[1]) * (b - a) + root * random[1] * (c - a);
-                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let (at_m, normal) = on_patch(faces, cumulative_m2, *area_m2, random)?;
                 self.towards_face(lamp.flux_w, *area_m2, at_m, normal, point)
+            }
+        }
+    }
+
+    /// Draws light as emitter number `emitter` sends it out, by four numbers in [0, 1): points evenly all around, bodies
+    /// evenly over their surface and by the cosine from there. `None` where there is no such emitter or it has no body.
+    pub fn emit(&self, emitter: usize, random: [f64; 4]) -> Option<Emission> {
+        let lamp = self.lamps.get(emitter)?;
+        let [place, beside, square, turn] = random;
+        let (at_m, normal) = match &lamp.body {
+            Body::Point => {
+                let direction = on_sphere([square, turn]).as_vec3();
+                return Some(Emission { origin_m: lamp.centre_m.as_vec3(), direction, normal: Vec3::ZERO });
+            }
+            Body::Sphere { radius_m } => {
+                let normal = on_sphere([place, beside]);
+                (lamp.centre_m + *radius_m * normal, normal)
+            }
+            Body::Quad { corner_m, u_m, v_m, normal, .. } => (corner_m + place * u_m + beside * v_m, *normal),
+            Body::Patch { faces, cumulative_m2, area_m2 } => on_patch(faces, cumulative_m2, *area_m2, [place, beside])?,
+        };
+        let (right, up) = normal.any_orthonormal_pair();
+        let (sine, cosine) = (2.0 * PI * turn).sin_cos();
+        let direction = square.sqrt() * (cosine * right + sine * up) + (1.0 - square).max(0.0).sqrt() * normal;
+        let origin_m = (at_m + self.lift_m * normal).as_vec3();
+        Some(Emission { origin_m, direction: direction.as_vec3().normalize(), normal: normal.as_vec3() })
+    }
+
+    /// What [`Sampler::sample`] gives as irradiance for the direction from which `emission` of that emitter arrives at
+    /// `point_m`, W/m2; so that both ways to draw the same light can be weighed against each other.
+    pub fn irradiance_of(&self, emitter: usize, emission: &Emission, point_m: Vec3) -> f64 {
+        let Some(lamp) = self.lamps.get(emitter) else { return 0.0 };
+        let towards = point_m.as_dvec3() - emission.origin_m.as_dvec3();
+        let squared = towards.length_squared().max(f64::MIN_POSITIVE);
+        match &lamp.body {
+            Body::Point => lamp.flux_w / (4.0 * PI * squared),
+            Body::Sphere { radius_m } => {
+                let squared = (point_m.as_dvec3() - lamp.centre_m).length_squared();
+                let sine_squared = (radius_m * radius_m / squared).min(1.0);
+                let whole = sine_squared / (1.0 + (1.0 - sine_squared).sqrt());
+                lamp.flux_w / (4.0 * PI * PI * radius_m * radius_m) * 2.0 * PI * whole
+            }
+            Body::Quad { .. } | Body::Patch { .. } => {
+                let cosine = f64::from(emission.normal.dot(emission.direction).max(0.0));
+                lamp.flux_w * cosine / (PI * squared)
             }
         }
     }
@@ -196,6 +244,27 @@ impl Lamp {
         }
         self.flux_w / towards.length_squared().max(self.reach_m * self.reach_m).max(f64::MIN_POSITIVE)
     }
+}
+
+/// A point of a patch, uniform by area, and its normal there.
+fn on_patch(faces: &[[DVec3; 3]], cumulative_m2: &[f64], area_m2: f64, random: [f64; 2]) -> Option<(DVec3, DVec3)> {
+    let target_m2 = random[0] * area_m2;
+    let number = cumulative_m2.partition_point(|&up_to_m2| up_to_m2 <= target_m2);
+    let number = number.min(faces.len().saturating_sub(1));
+    let ([a, b, c], up_to_m2) = (*faces.get(number)?, *cumulative_m2.get(number)?);
+    let face_m2 = 0.5 * (b - a).cross(c - a).length();
+    // What the choice of the face left of the first number is uniform again.
+    let root = ((up_to_m2 - target_m2) / face_m2).clamp(0.0, 1.0).sqrt();
+    let at_m = a + root * (1.0 - random[1]) * (b - a) + root * random[1] * (c - a);
+    Some((at_m, (b - a).cross(c - a).normalize_or_zero()))
+}
+
+/// Uniform over the sphere.
+fn on_sphere([height, turn]: [f64; 2]) -> DVec3 {
+    let z = 1.0 - 2.0 * height;
+    let ring = (1.0 - z * z).max(0.0).sqrt();
+    let (sine, cosine) = (2.0 * PI * turn).sin_cos();
+    DVec3::new(ring * cosine, ring * sine, z)
 }
 
 /// The faces of a patch with the running sum of their areas, and the ball around them.
@@ -272,6 +341,35 @@ mod tests {
         let shining = Material { name: String::new(), reflectance: 0.0, transmittance: 0.0, emission_w_m2_sr: 10.0 };
         let scene = Scene { mesh, materials: vec![shining], ..Scene::default() };
         check(irradiance(&scene, Vec3::Z), expected);
+    }
+
+    #[test]
+    fn what_leaves_a_light_is_what_arrives() {
+        let quad = Light::Quad { corner_m: Vec3::new(-0.5, -0.5, 1.5), u_m: Vec3::Y, v_m: Vec3::X, flux_w: 50.0 };
+        let ball = Light::Sphere { centre_m: Vec3::new(0.3, 0.0, 1.5), radius_m: 0.4, flux_w: 50.0 };
+        for light in [quad, ball, Light::Point { position_m: Vec3::Z, flux_w: 50.0 }] {
+            let scene = lit_by(light);
+            let sampler = Sampler::new(&scene, &Sources::of(&scene), 1e-5);
+            let (mut landed, mut weighed_m2, half_m, count) = (0, 0.0, 0.05, 1_000_000);
+            for index in 0..count {
+                let number = |ratio: f64| (0.5 + ratio * f64::from(index)).fract();
+                let random = [0.856_674_883_854_5, 0.733_891_856_627_9, 0.628_706_721_037_6, 0.538_596_906_9];
+                let leaves = sampler.emit(0, random.map(number)).unwrap();
+                let at_m = leaves.origin_m - leaves.direction * (leaves.origin_m.z / leaves.direction.z);
+                if leaves.direction.z < 0.0 && at_m.abs().max_element() < half_m {
+                    landed += 1;
+                    // Each stands for flux / count: over the irradiance it brings that is an area.
+                    weighed_m2 += 50.0
+                        / f64::from(count)
+                        / (sampler.irradiance_of(0, &leaves, at_m) * f64::from(-leaves.direction.z));
+                }
+            }
+            let found = 50.0 * f64::from(landed) / f64::from(count) / f64::from(4.0 * half_m * half_m);
+            assert!((found / irradiance(&scene, Vec3::Z) - 1.0).abs() < 0.05, "{light:?}: {found}");
+            // The directions in which the light shows fill the density of the other draw once over.
+            let area_m2 = f64::from(4.0 * half_m * half_m);
+            assert!((weighed_m2 / area_m2 - 1.0).abs() < 0.1, "{light:?}: {weighed_m2} m2");
+        }
     }
 
     #[test]

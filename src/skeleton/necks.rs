@@ -22,6 +22,10 @@ pub struct Neck {
     pub normal: Vec3,
     /// Its area, m2.
     pub area_m2: f32,
+    /// The point its border was felt from, in its plane, metres; every point of the border is in sight of it.
+    pub centre_m: Vec3,
+    /// Its border, in its plane, around the centre, metres.
+    pub outline_m: Vec<Vec3>,
 }
 
 /// Rays across a neck: a 0.9 x 2.1 m door comes out to 1%.
@@ -118,7 +122,14 @@ fn neck(
     let along = if forwards { directions[edge] } else { -directions[edge] };
     let normal = turned(matter, centre_m, along);
     let section = Section::new(matter, centre_m, normal, RAYS);
-    Neck { cells, position_m: section.middle_m(), normal, area_m2: section.area_m2 }
+    Neck {
+        cells,
+        position_m: section.middle_m(),
+        normal,
+        area_m2: section.area_m2,
+        centre_m,
+        outline_m: section.outline_m(),
+    }
 }
 
 /// The normal near `normal` across which the section is least.

@@ -61,6 +61,12 @@ impl Section {
         self.centre_m + if weight > 0.0 { sum / weight } else { Vec3::ZERO }
     }
 
+    /// Its border, a point for each ray of the fan, metres.
+    pub fn outline_m(&self) -> Vec<Vec3> {
+        let rays = directions(self.normal, self.reaches_m.len()).zip(&self.reaches_m);
+        rays.map(|(direction, reach_m)| self.centre_m + direction * *reach_m).collect()
+    }
+
     /// Whether a point, moved straight onto the plane, falls into the section.
     pub fn covers(&self, point_m: Vec3) -> bool {
         let to = point_m - self.centre_m;
