@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// The command that made a file, told in its first line.
 const MADE_BY: &str = "# made by: cargo run --release --example make_scenes -- scenes\n";
@@ -104,6 +104,11 @@ impl Mesh {
         self.groups.iter().flat_map(|(_, polygons)| polygons)
     }
 
+    /// Corners of the triangles that the polygons make when fanned.
+    pub fn triangle_corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.polygons().flat_map(|p| (1..p.len() - 1).map(|i| [p[0], p[i], p[i + 1]].map(|v| self.vertices[v])))
+    }
+
     fn obj(&self, scene: &Scene) -> String {
         let mut text = format!("{MADE_BY}# {}, metres, Z up, normals into the void\n", scene.name);
         if !scene.materials.is_empty() {
@@ -152,6 +157,31 @@ impl Table {
 }
 
 impl Scene {
+    /// The scene turned about the z axis: mesh, lights and sensors.
+    pub fn turned(mut self, degrees: f64) -> Self {
+        let turn = DQuat::from_rotation_z(degrees.to_radians());
+        // Vertices and lights in whole tenths of a millimetre again; sensors on walls keep all digits.
+        let place = |p: DVec3| tidy((turn * p).to_array());
+        self.mesh.vertices = self.mesh.vertices.into_iter().map(place).collect();
+        self.lights = self
+            .lights
+            .into_iter()
+            .map(|light| match light {
+                Light::Point { position, flux_w } => Light::Point { position: place(position), flux_w },
+                Light::Sphere { center, radius, flux_w } => Light::Sphere { center: place(center), radius, flux_w },
+                Light::Quad { corner, u, v, flux_w } => {
+                    Light::Quad { corner: place(corner), u: place(u), v: place(v), flux_w }
+                }
+            })
+            .collect();
+        for sensor in self.tables.iter_mut().flat_map(|table| &mut table.sensors) {
+            let p = turn * sensor.position;
+            sensor.normal = sensor.normal.map(|normal| turn * normal);
+            sensor.position = if sensor.normal.is_some() { p } else { tidy(p.to_array()) };
+        }
+        self
+    }
+
     /// Writes the folder `root/<name>`; references that lie there stay.
     pub fn write(&self, root: &Path) -> io::Result<()> {
         let folder = root.join(self.name);
