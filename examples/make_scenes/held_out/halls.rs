@@ -10,7 +10,7 @@ const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 
 fn plan() -> Plan {
     let mut plan = Plan::default()
-        // The hall; the shaft, with a wide gate from the hall and a hatch above it; a room at the shaft's head.
+        // The hall; the shaft, with a wide gate from the hall; a room at the shaft's head.
         .void([0.0, 0.0, 0.0], [24.03, 16.07, 2.83])
         .void([24.31, 11.13, 0.0], [27.33, 14.17, 11.03])
         .void([24.03, 11.61, 0.0], [24.31, 13.43, 2.27])
