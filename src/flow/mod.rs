@@ -8,6 +8,7 @@
 pub mod backward;
 pub mod direct;
 pub mod forward;
+pub mod network;
 pub mod paths;
 pub mod sequence;
 pub mod solve;
@@ -30,6 +31,7 @@ pub fn estimator(method: Method) -> Option<&'static Estimator<'static>> {
     match method {
         Method::Backward => Some(&backward::estimate),
         Method::Forward => Some(&forward::estimate),
+        Method::Network => Some(&network::estimate),
         Method::Trace => None,
     }
 }
@@ -57,6 +59,7 @@ pub fn ladder(method: Method) -> Vec<Rung> {
     match method {
         Method::Backward => one(Box::new(backward::estimate)),
         Method::Forward => one(Box::new(forward::estimate)),
+        Method::Network => one(network::with(network::Quality::MEDIUM)),
         Method::Trace => Vec::new(),
     }
 }

@@ -1,0 +1,195 @@
+//! What does a sensor see of the patches?
+//!
+//! Rays evenly over its sphere (with a normal: half of them by the cosine, half evenly over its hemisphere) and over the
+//! necks of its room, together weighed by the sum of their densities. A wall shines by its own reflectance times the light
+//! that arrives at its patch; where the sensor sees a patch with many rays, the light that lands straight on it is asked for
+//! at the very point, by a shadow ray, for there a patch is large against what the sensor can tell apart; where it sees it
+//! with few, its mean is the better answer.
+
+use super::patches::Start;
+use super::walk::{End, walk};
+use super::{Network, Quality};
+use crate::flow::direct::direct;
+use crate::flow::sequence;
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Field, Reading, Settings, Shares, Status};
+use crate::model::Probe;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Shadow rays from a sensor to a light that has a body.
+const DIRECT_RAYS: u32 = 32;
+
+/// A patch that this many rays meet is large in the sensor's view.
+const LARGE_FROM_RAYS: usize = 6;
+
+/// A light that brings less than this share of a patch's irradiance is not asked for at points of it.
+const LEAST_SHARE: f64 = 0.02;
+
+/// Most necks that rays are aimed at.
+const MOST_NECKS: usize = 8;
+
+/// Offsets of the sensors' sequences start here.
+const SENSOR_OFFSETS: u64 = 1 << 43;
+
+/// The field at the probes.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn gather(
+    network: &Network,
+    quality: &Quality,
+    probes: &[Probe],
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Field, Cancelled> {
+    progress.begin("gather", probes.len() as u64);
+    let answers: Result<Vec<(Reading, Vec<f64>)>, Cancelled> = probes
+        .par_iter()
+        .enumerate()
+        .map(|(number, probe)| {
+            cancel.check()?;
+            progress.advance(1);
+            Ok(at_probe(network, quality, probe, sequence::offset(settings.seed, SENSOR_OFFSETS + number as u64)))
+        })
+        .collect();
+    progress.end();
+    let (readings, rows): (Vec<Reading>, Vec<Vec<f64>>) = answers?.into_iter().unzip();
+    let shares = settings.shares.then(|| Shares {
+        emitters: network.grounds.model.shining.len(),
+        values_w_m2: rows.into_iter().flatten().collect(),
+    });
+    Ok(Field { readings, warnings: Vec::new(), shares })
+}
+
+/// A ray from a sensor and what it meets.
+struct Sight {
+    patch: u32,
+    at: Start,
+    direction: Vec3,
+    /// Share that comes through glazing, over pi and the density of rays: radiosity to irradiance.
+    weight: f64,
+    /// Whether it is one of every second ray.
+    odd: bool,
+}
+
+fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2]) -> (Reading, Vec<f64>) {
+    let model = network.grounds.model;
+    let lamps = model.shining.len();
+    let Ok(node) = probe.place else {
+        return (Reading::none(probe.place.err().unwrap_or(Status::Unreached)), vec![0.0; lamps]);
+    };
+    let from_m = probe.position_m + probe.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
+    let (mut value_w_m2, mut flux_w_m2, mut row) = (0.0, DVec3::ZERO, vec![0.0; lamps]);
+    for shining in model.shining.iter().filter(|shining| shining.place.is_ok() && shining.flux_w > 0.0) {
+        let straight = direct(model, from_m, probe.normal, shining.emitter, DIRECT_RAYS, offset);
+        value_w_m2 += straight.value_w_m2;
+        flux_w_m2 += straight.flux_w_m2;
+        row[shining.emitter] += straight.value_w_m2;
+    }
+
+    let cell = model.skeleton.graph.node_weight(node).map_or(u32::MAX, |node| node.cell);
+    let sights = sights(network, quality, from_m, probe.normal, cell, offset);
+    let mut met: Vec<u32> = sights.iter().map(|sight| sight.patch).collect();
+    met.sort_unstable();
+    let rays_to = |patch: u32| met.partition_point(|&other| other <= patch) - met.partition_point(|&other| other < patch);
+
+    let mut halves = [0.0; 2];
+    let mut variants = [0.0; 3];
+    for sight in &sights {
+        let patch = sight.patch as usize;
+        let reflects = f64::from(sight.at.answer.reflects);
+        let cosine = probe.normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
+        let weight = reflects * sight.weight;
+        let is_large = rays_to(sight.patch) >= LARGE_FROM_RAYS;
+        let reflected_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[patch]).sum();
+        let area_m2 = network.grounds.patches.list[patch].area_m2;
+        let all_w_m2: f64 =
+            reflected_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;
+
+        let mut arriving_w_m2 = 0.0;
+        for (emitter, landing) in network.landings.iter().enumerate() {
+            let mean_w_m2 = landing.flux_w[patch] / area_m2;
+            let landing_w_m2 = if is_large && mean_w_m2 > LEAST_SHARE * all_w_m2 {
+                let lifted_m = sight.at.position_m + sight.at.normal * model.rays.epsilon_m();
+                direct(model, lifted_m, Some(sight.at.normal), emitter, 1, offset).value_w_m2
+            } else {
+                mean_w_m2
+            };
+            let reflected_w_m2 = if network.reflected_w_m2.len() == lamps { network.reflected_w_m2[emitter][patch] } else { 0.0 };
+            row[emitter] += weight * cosine * (landing_w_m2 + reflected_w_m2);
+            arriving_w_m2 += landing_w_m2;
+        }
+        let radiosity_w_m2 = arriving_w_m2 + reflected_w_m2;
+        value_w_m2 += weight * cosine * radiosity_w_m2;
+        flux_w_m2 += weight * radiosity_w_m2 * sight.direction.as_dvec3();
+        halves[usize::from(sight.odd)] += 2.0 * weight * cosine * radiosity_w_m2;
+        for (sum, variant) in variants.iter_mut().zip(&network.variants_w_m2) {
+            *sum += weight * cosine * (variant[patch] - reflected_w_m2);
+        }
+    }
+    let noise = 0.5 * (halves[0] - halves[1]);
+    let lines = 0.5 * (variants[0] - variants[1]);
+    let error = noise.hypot(lines).hypot(0.5 * variants[2]);
+    let status = if value_w_m2 > 0.0 { Status::Ok } else { Status::Dark };
+    (Reading { value_w_m2, flux_w_m2, error_w_m2: Some(error), status }, row)
+}
+
+/// The rays of a sensor, with what they meet.
+fn sights(
+    network: &Network,
+    quality: &Quality,
+    from_m: Vec3,
+    normal: Option<Vec3>,
+    cell: u32,
+    offset: [f64; 2],
+) -> Vec<Sight> {
+    let portals: Vec<&super::Portal> = (network.grounds.portals.iter())
+        .filter(|portal| portal.cells.contains(&cell))
+        .take(MOST_NECKS)
+        .collect();
+    let count = quality.gather_rays;
+    let over_all = (0..count).map(|ray| match normal {
+        None => sequence::spiral(ray, count, offset),
+        Some(normal) if ray % 2 == 0 => sequence::cosine_about(normal, sequence::square(ray, offset)),
+        Some(normal) => {
+            let [height, turn] = sequence::square(ray, offset);
+            // The cosine's square is uniform about the cosine's own draw.
+            sequence::cosine_about(normal, [1.0 - height * height, turn])
+        }
+    });
+    let to_necks = portals.iter().flat_map(|portal| {
+        let toward = move |ray| (portal.point_m(ray, quality.gather_neck_rays, offset) - from_m).normalize_or_zero();
+        (0..quality.gather_neck_rays).map(toward)
+    });
+    let density_per_sr = |direction: Vec3| {
+        let over_all = match normal {
+            None => f64::from(count) / (4.0 * PI),
+            Some(normal) => f64::from(count) / 2.0 * (f64::from(normal.dot(direction)).max(0.0) / PI + 1.0 / (2.0 * PI)),
+        };
+        let to_necks = portals.iter().filter_map(|portal| {
+            let crossing = portal.crossing(from_m, direction, f32::INFINITY)?;
+            let squared = f64::from(crossing.distance_m).powi(2);
+            Some(f64::from(quality.gather_neck_rays) * squared / (portal.area_m2 * f64::from(crossing.cosine)))
+        });
+        over_all + to_necks.sum::<f64>()
+    };
+
+    let mut sights = Vec::with_capacity(count as usize);
+    let seen = |direction: &Vec3| normal.is_none_or(|normal| normal.dot(*direction) > 0.0) && *direction != Vec3::ZERO;
+    for (number, direction) in over_all.chain(to_necks).filter(seen).enumerate() {
+        let Some(walk) = walk(&network.grounds, from_m, direction) else { continue };
+        let mut weight = 1.0 / (PI * density_per_sr(direction));
+        let odd = number % 2 == 1;
+        for pane in &walk.panes {
+            sights.push(Sight { patch: pane.sides[0], at: pane.at, direction, weight, odd });
+            weight *= f64::from(pane.at.answer.passes);
+        }
+        if let End::Patch(patch) = walk.end {
+            sights.push(Sight { patch, at: walk.at, direction, weight, odd });
+        }
+    }
+    sights
+}

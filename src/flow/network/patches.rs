@@ -1,0 +1,176 @@
+//! Which pieces of wall exchange light?
+//!
+//! A patch is what one zone sees in one direction: all walls in it whose normals have the same dominant axis and sign, panes
+//! apart from what is opaque. Areas, normals and reflectances are the mesh's own, by points spread evenly over it: a point
+//! stands for the same area everywhere. A side of a wall belongs to the void that begins in front of it.
+//!
+//! Limits: crevices that the voxels close have no zone; what is in them is taken to be where the void ends before them.
+
+use super::Quality;
+use super::zones::Zones;
+use crate::flow::sequence;
+use crate::model::Model;
+use crate::model::walls::{Answer, WallPoint};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Orientations of opaque walls, then of panes.
+const KINDS: usize = 12;
+
+/// No patch.
+const NONE: u32 = u32::MAX;
+
+/// In front of a wall the void is looked for this far, in voxels, in these steps: conservative voxels stand up to two before
+/// a wall.
+const STEPS_OUT_VOXELS: [f32; 4] = [0.6, 1.2, 1.8, 2.5];
+
+/// Back along a ray the void is looked for in steps of half a voxel, this many.
+const STEPS_BACK: u32 = 24;
+
+/// A zone is seen to have about this many patches; decides only how many points are tried.
+const PATCHES_A_ZONE: f32 = 2.5;
+
+/// Most points that are tried on the mesh.
+const MOST_POINTS: f64 = 4e6;
+
+/// One side of walls in one zone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// The zone it faces.
+    pub zone: u32,
+    /// Its true area, m2.
+    pub area_m2: f64,
+    /// Mean reflectance.
+    pub reflectance: f64,
+    /// Lines that start on it, per m2.
+    pub lines_per_m2: f64,
+    /// Where they start, in [`Patches::starts`].
+    pub starts: std::ops::Range<usize>,
+}
+
+/// A point of a patch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// On the wall, metres.
+    pub position_m: Vec3,
+    /// Unit normal on the patch's side.
+    pub normal: Vec3,
+    /// How the wall answers light there.
+    pub answer: Answer,
+}
+
+/// The patches of a model.
+#[derive(Debug, Clone)]
+pub struct Patches {
+    /// All of them, by zone and orientation.
+    pub list: Vec<Patch>,
+    /// Points of them, those of a patch in a row.
+    pub starts: Vec<Start>,
+    /// The patch of each zone and kind; a kind that got no point is that of the zone's largest patch.
+    of_kind: Vec<u32>,
+}
+
+impl Patches {
+    /// The patches of the zones of a model, with about [`Quality::lines`] starts each. Linear in the starts.
+    pub fn new(model: &Model, zones: &Zones, quality: &Quality, seed: u64) -> Self {
+        let wanted = f64::from(PATCHES_A_ZONE * quality.lines as f32) * zones.count as f64;
+        let mut tried = wanted.clamp(1024.0, MOST_POINTS).ceil();
+        let mut found = points(model, zones, tried as u32, seed);
+        // Where most of the mesh faces no void of ours, as outside of a house, more points are tried.
+        if (found.len() as f64) < 0.5 * wanted && !found.is_empty() {
+            tried = (tried * wanted / found.len() as f64).min(MOST_POINTS).ceil();
+            found = points(model, zones, tried as u32, seed);
+        }
+        let point_m2 = model.walls.area_m2() / tried;
+
+        found.sort_by_key(|(kind, _)| *kind);
+        let mut patches =
+            Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
+        for side in found.chunk_by(|a, b| a.0 == b.0) {
+            patches.add(side, point_m2, quality.lines);
+        }
+        patches.fill_kinds();
+        patches
+    }
+
+    /// A patch of these points, each of which stands for `point_m2`.
+    fn add(&mut self, side: &[(u32, Start)], point_m2: f64, lines: u32) {
+        let Some(&(kind, _)) = side.first() else { return };
+        let count = side.len();
+        // Fewer lines for scraps of wall.
+        let wanted = (f64::from(lines) * count as f64).sqrt().ceil() as usize;
+        let kept = wanted.clamp(1, (lines as usize).max(1));
+        let first = self.starts.len();
+        self.starts.extend((0..kept).map(|number| side[number * count / kept].1));
+        let area_m2 = count as f64 * point_m2;
+        let reflectance = side.iter().map(|(_, start)| f64::from(start.answer.reflects)).sum::<f64>() / count as f64;
+        if let Some(place) = self.of_kind.get_mut(kind as usize) {
+            *place = self.list.len() as u32;
+        }
+        self.list.push(Patch {
+            zone: kind / KINDS as u32,
+            area_m2,
+            reflectance,
+            lines_per_m2: kept as f64 / area_m2,
+            starts: first..self.starts.len(),
+        });
+    }
+
+    fn fill_kinds(&mut self) {
+        for kinds in self.of_kind.chunks_mut(KINDS) {
+            let area_m2 = |patch: u32| self.list.get(patch as usize).map_or(0.0, |patch| patch.area_m2);
+            let largest = kinds.iter().copied().filter(|&patch| patch != NONE).max_by(|&a, &b| {
+                area_m2(a).total_cmp(&area_m2(b)).then(b.cmp(&a))
+            });
+            kinds.iter_mut().filter(|patch| **patch == NONE).for_each(|patch| *patch = largest.unwrap_or(NONE));
+        }
+    }
+
+    /// The patch of a point on a wall, its normal on the side that was hit, by a ray that came along `direction`. `None`
+    /// where no zone of ours lies before it.
+    pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3) -> Option<u32> {
+        let node = before_wall(model, hit.position_m, hit.normal)
+            .or_else(|| back_along(model, hit.position_m, direction))?;
+        let kind = kind(zones.at(node, hit.position_m), hit.normal, hit.answer);
+        self.of_kind.get(kind as usize).copied().filter(|&patch| patch != NONE)
+    }
+}
+
+/// Points spread evenly over the mesh, with the zone and kind of each side that faces the void.
+fn points(model: &Model, zones: &Zones, count: u32, seed: u64) -> Vec<(u32, Start)> {
+    let offset = sequence::offset(seed, u64::MAX);
+    let sides = |index: u32| {
+        let share = (f64::from(index) + 0.5) / f64::from(count);
+        let point = model.walls.point_at(share, sequence::square(index, offset));
+        let side = move |normal: Vec3| {
+            let WallPoint { triangle, position_m, .. } = point?;
+            let answer = model.walls.answers.get(triangle as usize).copied().unwrap_or_default();
+            let node = before_wall(model, position_m, normal)?;
+            Some((kind(zones.at(node, position_m), normal, answer), Start { position_m, normal, answer }))
+        };
+        let normal = point.map_or(Vec3::Z, |point| point.normal);
+        [side(normal), side(-normal)].into_iter().flatten()
+    };
+    (0..count).into_par_iter().flat_map_iter(sides).collect()
+}
+
+/// The node of the void before a wall.
+fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<u32> {
+    let lattice = &model.voxels.lattice;
+    let node = |out: f32| model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * (out * lattice.voxel_m)));
+    STEPS_OUT_VOXELS.into_iter().find_map(node)
+}
+
+/// The node of the void that a ray left before it came to a point.
+fn back_along(model: &Model, point_m: Vec3, direction: Vec3) -> Option<u32> {
+    let lattice = &model.voxels.lattice;
+    let step_m = -0.5 * lattice.voxel_m * direction;
+    (1..=STEPS_BACK).find_map(|step| model.skeleton.nearest.node(lattice.voxel_at(point_m + step as f32 * step_m)))
+}
+
+/// The number of a zone's side.
+fn kind(zone: u32, normal: Vec3, answer: Answer) -> u32 {
+    let axis = normal.abs().max_position();
+    let side = 2 * axis + usize::from(normal[axis] < 0.0);
+    KINDS as u32 * zone + (side + if answer.passes > 0.0 { 6 } else { 0 }) as u32
+}
