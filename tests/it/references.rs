@@ -24,9 +24,9 @@ const LARGEST_TRUSTED_SHARE: f64 = 0.05;
 /// Above this share of the reading, samples are so few and so skewed that deviations are not normal either.
 const LARGEST_TRUSTED_ERROR: f64 = 0.1;
 
-/// The scene files in the folders under `scenes` that `wanted` holds for, sorted.
-fn scene_files(wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes");
+/// The scene files in the folders under `root` that `wanted` holds for, sorted.
+fn scene_files(root: &str, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(root);
     let folders = std::fs::read_dir(root).expect("the folder of scenes").map(|entry| entry.expect("an entry").path());
     let folders = folders.filter(|folder| folder.is_dir() && wanted(folder));
     let files = folders.flat_map(|folder| std::fs::read_dir(folder).expect("a scene's folder"));
@@ -106,7 +106,12 @@ fn check(files: &[PathBuf], most_samples: usize, least: usize) {
 
 #[test]
 fn the_path_tracer_agrees_with_mitsuba() {
-    check(&scene_files(|folder| !folder.ends_with("real")), MOST_SAMPLES, 400);
+    check(&scene_files("scenes", |folder| !folder.ends_with("real")), MOST_SAMPLES, 400);
+}
+
+#[test]
+fn the_path_tracer_agrees_with_mitsuba_on_the_test_set() {
+    check(&scene_files("scenes/held_out", |_| true), MOST_SAMPLES, 80);
 }
 
 #[test]
@@ -116,5 +121,5 @@ fn the_path_tracer_agrees_with_mitsuba_on_real_scenes() {
         println!("skipped: ../shared/data is absent");
         return;
     }
-    check(&scene_files(|folder| folder.ends_with("real")), MOST_SAMPLES_IN_REAL_SCENES, 50);
+    check(&scene_files("scenes", |folder| folder.ends_with("real")), MOST_SAMPLES_IN_REAL_SCENES, 50);
 }
