@@ -115,7 +115,7 @@ def main():
         if rare:
             made.append(f"# one sample over {TRUSTED_SHARE:.0%} of the sum, standard error not to be trusted: {' '.join(rare)}")
         title = f"# {scene.table.get('name', scene.path.stem)}: irradiance and standard error in W/m2; f = net flux vector in W/m2, 0,0,0 = not known"
-        added = [f"# added, {order[0]} to {order[-1]}:"] if old else []
+        added = [f"# added: {' '.join(order)}"] if old else []
         lines = [*(remarks or [title]), *added, *made, "id,irradiance,stderr,fx,fy,fz"]
         new = {}
         for name in order:
