@@ -83,6 +83,11 @@ fn tidy(p: [f64; 3]) -> DVec3 {
     (DVec3::from(p) * 1e4).round() / 1e4
 }
 
+/// A sensor on a slanted wall, placed to a micrometre; a tenth of a millimetre would be as much off its wall.
+pub fn on_slant(id: String, position: DVec3, normal: DVec3) -> Sensor {
+    Sensor { id, position: (position * 1e6).round() / 1e6, normal: Some((normal * 1e9).round() / 1e9) }
+}
+
 /// A sensor of scalar irradiance.
 pub fn scalar(id: impl Into<String>, position: [f64; 3]) -> Sensor {
     Sensor { id: id.into(), position: tidy(position), normal: None }
@@ -160,7 +165,7 @@ impl Scene {
     /// The scene turned about the z axis: mesh, lights and sensors.
     pub fn turned(mut self, degrees: f64) -> Self {
         let turn = DQuat::from_rotation_z(degrees.to_radians());
-        // Vertices and lights in whole tenths of a millimetre again; sensors on walls keep all digits.
+        // Vertices and lights in whole tenths of a millimetre again.
         let place = |p: DVec3| tidy((turn * p).to_array());
         self.mesh.vertices = self.mesh.vertices.into_iter().map(place).collect();
         self.lights = self
@@ -175,9 +180,10 @@ impl Scene {
             })
             .collect();
         for sensor in self.tables.iter_mut().flat_map(|table| &mut table.sensors) {
-            let p = turn * sensor.position;
-            sensor.normal = sensor.normal.map(|normal| turn * normal);
-            sensor.position = if sensor.normal.is_some() { p } else { tidy(p.to_array()) };
+            *sensor = match sensor.normal {
+                Some(normal) => on_slant(sensor.id.clone(), turn * sensor.position, turn * normal),
+                None => scalar(sensor.id.clone(), (turn * sensor.position).to_array()),
+            };
         }
         self
     }

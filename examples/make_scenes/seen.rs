@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Mesh, Sensor};
+use crate::scene::{Mesh, Sensor, on_slant};
 
 /// How far sensors stand off their wall.
 const OFF_M: f64 = 0.001;
@@ -18,8 +18,7 @@ pub fn seen(mesh: &Mesh, id: &str, from: [f64; 3], towards: [f64; 3]) -> Result<
     if normal.dot(towards) >= 0.0 || least < EDGE {
         return Err(format!("{id} sees a wall's back or its edge: barycentric {least:.3}"));
     }
-    // Not rounded to a tenth of a millimetre, for then it would be off its slanted wall by as much.
-    Ok(Sensor { id: id.into(), position: from + towards * t + normal * OFF_M, normal: Some(normal) })
+    Ok(on_slant(id.into(), from + towards * t + normal * OFF_M, normal))
 }
 
 /// Where a ray meets a triangle: its parameter, the triangle's normal, the least barycentric coordinate.
