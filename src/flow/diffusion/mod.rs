@@ -99,7 +99,8 @@ fn diffused(circuit: &Circuit, landed: &[Landed], probes: &[Probe], shares: bool
     let nodes = probes.iter().filter_map(|probe| probe.place.ok());
     nodes.filter_map(|node| asked.get_mut(node.index()).map(|asked| *asked = true)).for_each(drop);
     let lights = landed.len();
-    let groups: Vec<_> = if shares { (0..lights).map(|light| light..light + 1).collect() } else { vec![0..lights] };
+    let at_once = if shares { 1 } else { lights.max(1) };
+    let groups: Vec<_> = (0..lights).step_by(at_once).map(|first| first..first + at_once).collect();
     let diffuse = |lights: std::ops::Range<usize>| {
         let spread = circuit.spread(&sources_w(circuit, &landed[lights.clone()]));
         let flux_w_m2 = circuit.flux_w_m2(&spread, &asked);

@@ -23,7 +23,7 @@ const RAYS_A_BOUNCE: usize = 8192;
 const LEAST_RAYS: usize = 64;
 
 /// Rays of all emitters together that leave lamps for the sensors, the first of each emitter.
-const LAMP_RAYS: usize = 4096;
+const LAMP_RAYS: usize = 8192;
 
 /// Surfaces of glazing and walls together that a ray may meet; what is left then stays where it is.
 const MOST_SURFACES: u32 = 64;
