@@ -4,11 +4,14 @@
 //! warnings to stderr.
 
 mod args;
+mod chart;
+mod peer;
 mod plan;
 mod report;
 mod run;
 mod stages;
 mod table;
+mod tolerance;
 mod write;
 
 use crate::job::{Cancel, Cancelled};
