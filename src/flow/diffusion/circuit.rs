@@ -8,9 +8,11 @@
 //! receives `(phi/4 - s/2) / (1 - alpha/2)` W/m2. Openings to the outside conduct `A / 4` to the ground.
 //!
 //! Along the curve light goes from wall to wall, so its currents follow what walls send out, `4 B = (rho phi + 2 s) /
-//! (1 - alpha/2)`, and not phi itself, which counts light on its last way to where it is absorbed too. That is exact to
-//! the second moment of one hop for any reflectance; the textbook's diffusion, which follows phi, is so in white rooms alone,
-//! and carries light too far in grey ones. It is solved beside, and where both differ neither is to be trusted.
+//! (1 - alpha/2)`, and not phi, which counts light on its last way to where it is absorbed too. That is exact to the second
+//! moment of one hop for any reflectance, but hops down a straight run have no second moment to speak of: a little light
+//! goes very far, and such currents end too soon. The textbook's diffusion follows phi; it carries light too far where bends
+//! and doors cut hops short. Both are solved and the geometric mean of the two is taken; where they differ neither is to be
+//! trusted.
 
 use super::eliminate::Eliminated;
 use super::reach::{Curve, Pool, Reached};
@@ -53,12 +55,23 @@ pub struct Circuit<'a> {
 /// Diffuse light in the circuit, by node, W/m2.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Spread {
-    /// Scalar irradiance.
-    pub potentials_w_m2: Vec<f64>,
-    /// Four times what the walls around send out: the scalar irradiance of one who sees them alone.
-    pub brightness_w_m2: Vec<f64>,
+    /// Scalar irradiance where currents follow what walls send out.
+    pub hops_w_m2: Vec<f64>,
     /// Scalar irradiance by the textbook's diffusion.
     pub textbook_w_m2: Vec<f64>,
+    /// Scalar irradiance, between the two.
+    pub potentials_w_m2: Vec<f64>,
+    /// Four times what the walls around send out, between the two: the scalar irradiance of one who sees them alone.
+    pub brightness_w_m2: Vec<f64>,
+}
+
+/// Where walls shine most, currents that follow them can leave less than nothing behind; less than this share of the
+/// textbook's is not believed.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// The geometric mean of light by hops and by the textbook.
+fn between(hops: f64, textbook: f64) -> f64 {
+    (hops.max(LEAST_SHARE * textbook) * textbook.max(0.0)).sqrt()
 }
 
 impl<'a> Circuit<'a> {
@@ -124,10 +137,15 @@ impl<'a> Circuit<'a> {
             currents_w[a as usize] -= current_w;
             currents_w[b as usize] += current_w;
         }
-        let potentials_w_m2 = self.eliminated.potentials(&currents_w);
-        let kept = self.pools.iter().map(|pool| kept(pool.reflectance));
-        let sent = kept.zip(&potentials_w_m2).zip(&given_w_m2).map(|((kept, phi), given)| kept * phi + given);
-        Spread { brightness_w_m2: sent.collect(), potentials_w_m2, textbook_w_m2 }
+        let hops_w_m2 = self.eliminated.potentials(&currents_w);
+        let sent = |node: usize| kept(self.pools[node].reflectance) * hops_w_m2[node] + given_w_m2[node];
+        let nodes = 0..textbook_w_m2.len();
+        Spread {
+            potentials_w_m2: nodes.clone().map(|node| between(hops_w_m2[node], textbook_w_m2[node])).collect(),
+            brightness_w_m2: nodes.map(|node| between(sent(node), textbook_w_m2[node])).collect(),
+            hops_w_m2,
+            textbook_w_m2,
+        }
     }
 
     /// The net flux around each node that is `asked` for, W/m2 (zero at the others): its integral over what is pooled there,
@@ -156,11 +174,11 @@ impl<'a> Circuit<'a> {
         (0..asked.len()).map(flux).collect()
     }
 
-    /// What the walls take of the light they send out (W, by node) and spread, and what leaves by openings, W. Together they
-    /// are what was sent out.
+    /// What the walls take of the light they send out (W, by node) and spread by hops, and what leaves by openings, W.
+    /// Together they are what was sent out.
     pub fn losses_w(&self, sources_w: &[f64], spread: &Spread) -> (f64, f64) {
         let (mut absorbed_w, mut escaped_w) = (0.0, 0.0);
-        for (node, (source_w, phi)) in sources_w.iter().zip(&spread.potentials_w_m2).enumerate() {
+        for (node, (source_w, phi)) in sources_w.iter().zip(&spread.hops_w_m2).enumerate() {
             let half_alpha = 1.0 - 1.0 / self.coupling[node];
             absorbed_w += self.coupling[node] * (0.25 * self.absorbing_m2[node] * phi - half_alpha * source_w);
             escaped_w += 0.25 * self.open_m2[node] * phi;

@@ -142,27 +142,25 @@ impl Lit<'_> {
         (straight, carried, noise_w_m2)
     }
 
-    /// What diffuse light gives, and how much more the textbook's diffusion would, W/m2.
+    /// What diffuse light gives, and how far its two forms are from it, W/m2.
     fn diffuse(&self, looking: &Looking, diffuse: &Diffuse) -> (Direct, f64) {
         let Diffuse { spread, .. } = diffuse;
         let node = looking.node.index();
         let at = |by_node: &[f64]| by_node.get(node).copied().unwrap_or(0.0);
-        let (phi, other) = (at(&spread.potentials_w_m2), at(&spread.textbook_w_m2));
+        let (phi, apart) = (at(&spread.potentials_w_m2), at(&spread.textbook_w_m2) - at(&spread.hops_w_m2));
         let mut flux_w_m2 = diffuse.flux_w_m2.get(node).copied().unwrap_or(DVec3::ZERO);
         let normal = looking.probe.normal.map(|normal| normal.as_dvec3());
-        let (mut value_w_m2, mut more_w_m2) = match normal {
-            None => (phi, other - phi),
-            Some(normal) => (0.25 * phi + 0.5 * normal.dot(flux_w_m2), 0.25 * (other - phi)),
+        let (mut value_w_m2, part) = match normal {
+            None => (phi, 1.0),
+            Some(normal) => (0.25 * phi + 0.5 * normal.dot(flux_w_m2), 0.25),
         };
 
         for (neck, side, view) in &looking.views {
-            let rise = |by_node: &[f64]| self.circuit.necks[*neck as usize].rise(*side, by_node) / SPHERE_SR;
-            let (radiance, other) = (rise(&spread.brightness_w_m2), rise(&spread.textbook_w_m2));
-            let seen = normal.map_or(view.solid_angle_sr, |normal| normal.dot(view.flux).max(0.0));
-            value_w_m2 += radiance * seen;
+            let sides = &self.circuit.necks[*neck as usize];
+            let radiance = sides.opening * (sides.mean(1 - side, &spread.brightness_w_m2) - phi) / SPHERE_SR;
+            value_w_m2 += radiance * normal.map_or(view.solid_angle_sr, |normal| normal.dot(view.flux).max(0.0));
             flux_w_m2 += radiance * view.flux;
-            more_w_m2 += (other - radiance) * seen;
         }
-        (Direct { value_w_m2: value_w_m2.max(0.0), flux_w_m2 }, more_w_m2)
+        (Direct { value_w_m2: value_w_m2.max(0.0), flux_w_m2 }, 0.5 * part * apart)
     }
 }

@@ -25,10 +25,10 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// How much more there is beyond the neck than on side `side` of what is given by node, the opening's part of it.
-    pub fn rise(&self, side: usize, by_node: &[f64]) -> f64 {
-        let sums = self.nodes.iter().map(|nodes| by_node[nodes[1 - side] as usize] - by_node[nodes[side] as usize]);
-        self.opening * sums.sum::<f64>() / self.nodes.len().max(1) as f64
+    /// The mean over the strands, on side `side`, of what is given by node.
+    pub fn mean(&self, side: usize, by_node: &[f64]) -> f64 {
+        let sum: f64 = self.nodes.iter().map(|nodes| by_node[nodes[side] as usize]).sum();
+        sum / self.nodes.len().max(1) as f64
     }
 }
 

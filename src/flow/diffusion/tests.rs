@@ -87,7 +87,7 @@ fn along_a_duct_light_falls_as_the_difference_equation_says() {
     order.sort_by(|a, b| along(*a).total_cmp(&along(*b)));
     let mut sources_w = vec![0.0; order.len()];
     sources_w[order[0]] = 1.0;
-    let potentials = circuit.spread(&sources_w).potentials_w_m2;
+    let potentials = circuit.spread(&sources_w).hops_w_m2;
 
     // Conductance A lambda g / 3 h against the walls' h P alpha g / (4 rho), lambda = 4 A / P = the side.
     let (step_m, decay_m) = (0.1, side_m * (reflectance / (3.0 * (1.0 - reflectance))).sqrt());
