@@ -11,7 +11,7 @@
 //! (1 - alpha/2)`, and not phi, which counts light on its last way to where it is absorbed too. That is exact to the second
 //! moment of one hop for any reflectance, but hops down a straight run have no second moment to speak of: a little light
 //! goes very far, and such currents end too soon. The textbook's diffusion follows phi; it carries light too far where bends
-//! and doors cut hops short. Both are solved and the geometric mean of the two is taken; where they differ neither is to be
+//! and doors cut hops short. Both are solved and their mean is taken, so that lights still add; where they differ neither is to be
 //! trusted.
 
 use super::eliminate::Eliminated;
@@ -59,20 +59,17 @@ pub struct Spread {
     pub hops_w_m2: Vec<f64>,
     /// Scalar irradiance by the textbook's diffusion.
     pub textbook_w_m2: Vec<f64>,
-    /// Scalar irradiance, between the two.
+    /// Scalar irradiance, the mean of the two.
     pub potentials_w_m2: Vec<f64>,
-    /// Four times what the walls around send out, between the two: the scalar irradiance of one who sees them alone.
+    /// By what factor the two differ, at least 1.
+    pub apart: Vec<f64>,
+    /// Four times what the walls around send out, the mean of the two: the scalar irradiance of one who sees them alone.
     pub brightness_w_m2: Vec<f64>,
 }
 
 /// Where walls shine most, currents that follow them can leave less than nothing behind; less than this share of the
-/// textbook's is not believed.
+/// textbook's is not believed when the two are compared.
 const LEAST_SHARE: f64 = 1e-3;
-
-/// The geometric mean of light by hops and by the textbook.
-fn between(hops: f64, textbook: f64) -> f64 {
-    (hops.max(LEAST_SHARE * textbook) * textbook.max(0.0)).sqrt()
-}
 
 impl<'a> Circuit<'a> {
     /// The network of a model whose nodes are surrounded so. About a microsecond a node.
@@ -140,9 +137,14 @@ impl<'a> Circuit<'a> {
         let hops_w_m2 = self.eliminated.potentials(&currents_w);
         let sent = |node: usize| kept(self.pools[node].reflectance) * hops_w_m2[node] + given_w_m2[node];
         let nodes = 0..textbook_w_m2.len();
+        let apart = |node: usize| match (hops_w_m2[node], textbook_w_m2[node]) {
+            (_, textbook) if textbook <= 0.0 => 1.0,
+            (hops, textbook) => f64::max(textbook / hops.max(LEAST_SHARE * textbook), hops / textbook),
+        };
         Spread {
-            potentials_w_m2: nodes.clone().map(|node| between(hops_w_m2[node], textbook_w_m2[node])).collect(),
-            brightness_w_m2: nodes.map(|node| between(sent(node), textbook_w_m2[node])).collect(),
+            apart: nodes.clone().map(apart).collect(),
+            potentials_w_m2: nodes.clone().map(|node| 0.5 * (hops_w_m2[node] + textbook_w_m2[node])).collect(),
+            brightness_w_m2: nodes.map(|node| 0.5 * (sent(node) + textbook_w_m2[node])).collect(),
             hops_w_m2,
             textbook_w_m2,
         }

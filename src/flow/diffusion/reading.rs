@@ -147,7 +147,7 @@ impl Lit<'_> {
         let Diffuse { spread, .. } = diffuse;
         let node = looking.node.index();
         let at = |by_node: &[f64]| by_node.get(node).copied().unwrap_or(0.0);
-        let (phi, apart) = (at(&spread.potentials_w_m2), at(&spread.textbook_w_m2) - at(&spread.hops_w_m2));
+        let (phi, apart) = (at(&spread.potentials_w_m2), at(&spread.apart));
         let mut flux_w_m2 = diffuse.flux_w_m2.get(node).copied().unwrap_or(DVec3::ZERO);
         let normal = looking.probe.normal.map(|normal| normal.as_dvec3());
         let (mut value_w_m2, part) = match normal {
@@ -161,6 +161,6 @@ impl Lit<'_> {
             value_w_m2 += radiance * normal.map_or(view.solid_angle_sr, |normal| normal.dot(view.flux).max(0.0));
             flux_w_m2 += radiance * view.flux;
         }
-        (Direct { value_w_m2: value_w_m2.max(0.0), flux_w_m2 }, 0.5 * part * apart)
+        (Direct { value_w_m2: value_w_m2.max(0.0), flux_w_m2 }, part * phi * (apart - 1.0))
     }
 }
