@@ -147,20 +147,31 @@ impl Lit<'_> {
         let Diffuse { spread, .. } = diffuse;
         let node = looking.node.index();
         let at = |by_node: &[f64]| by_node.get(node).copied().unwrap_or(0.0);
-        let (phi, apart) = (at(&spread.potentials_w_m2), at(&spread.apart));
-        let mut flux_w_m2 = diffuse.flux_w_m2.get(node).copied().unwrap_or(DVec3::ZERO);
+        let phi = at(&spread.potentials_w_m2).max(0.0);
+        // Light that is nearly even all around has no longer flux than half of it, and then none is negative on any plane.
+        let flux_w_m2 = diffuse.flux_w_m2.get(node).copied().unwrap_or(DVec3::ZERO).clamp_length_max(0.5 * phi);
         let normal = looking.probe.normal.map(|normal| normal.as_dvec3());
-        let (mut value_w_m2, part) = match normal {
-            None => (phi, 1.0),
-            Some(normal) => (0.25 * phi + 0.5 * normal.dot(flux_w_m2), 0.25),
+        // Over the hemisphere of a plane it is half of the flux, and a quarter of what is even.
+        let (mut value_w_m2, mut flux_w_m2, part) = match normal {
+            None => (phi, flux_w_m2, 1.0),
+            Some(normal) => (0.25 * phi + 0.5 * normal.dot(flux_w_m2), 0.25 * phi * normal + 0.5 * flux_w_m2, 0.25),
         };
 
         for (neck, side, view) in &looking.views {
             let sides = &self.circuit.necks[*neck as usize];
             let radiance = sides.opening * (sides.mean(1 - side, &spread.brightness_w_m2) - phi) / SPHERE_SR;
-            value_w_m2 += radiance * normal.map_or(view.solid_angle_sr, |normal| normal.dot(view.flux).max(0.0));
-            flux_w_m2 += radiance * view.flux;
+            let seen = normal.map_or(view.solid_angle_sr, |normal| normal.dot(view.flux).max(0.0));
+            value_w_m2 += radiance * seen;
+            if normal.is_none() || seen > 0.0 {
+                flux_w_m2 += radiance * view.flux;
+            }
         }
-        (Direct { value_w_m2: value_w_m2.max(0.0), flux_w_m2 }, part * phi * (apart - 1.0))
+        let value_w_m2 = value_w_m2.max(0.0);
+        let flux_w_m2 = match normal {
+            None => flux_w_m2.clamp_length_max(value_w_m2),
+            Some(_) if value_w_m2 == 0.0 => DVec3::ZERO,
+            Some(_) => flux_w_m2,
+        };
+        (Direct { value_w_m2, flux_w_m2 }, part * phi * (at(&spread.apart) - 1.0))
     }
 }

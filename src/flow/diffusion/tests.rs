@@ -141,6 +141,8 @@ fn the_extremes_give_numbers_and_say_what_they_are() {
                 assert!(reading.value_w_m2.is_finite() && reading.value_w_m2 > 0.0, "{reflectance}: {reading:?}");
                 assert!(reading.error_w_m2.is_some_and(f64::is_finite) && reading.flux_w_m2.is_finite());
             }
+            let plane = field.readings[1];
+            assert!((plane.flux_w_m2.z / plane.value_w_m2 - 1.0).abs() < 1e-5, "{plane:?}");
             let told = field.warnings.iter().any(|warning| warning.contains(says) && !says.is_empty());
             assert_eq!(told, !says.is_empty(), "{reflectance}: {:?}", field.warnings);
             if reflectance == 0.0 {
