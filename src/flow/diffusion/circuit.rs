@@ -22,7 +22,7 @@ use crate::model::Model;
 use glam::DVec3;
 use petgraph::graph::NodeIndex;
 
-/// A sink below this share of the walls takes so little that there is no telling where the light stays.
+/// No wall absorbs less: a closed void that absorbs nothing has no steady light.
 const LEAST_ABSORPTANCE: f64 = 1e-6;
 
 /// The resistor network of a model.
@@ -84,7 +84,8 @@ impl<'a> Circuit<'a> {
 
         let coupling: Vec<f64> = pools.iter().map(|pool| 2.0 / (1.0 + pool.reflectance)).collect();
         let walls = around.wall_m2.iter().zip(&around.reflecting_m2);
-        let absorbing_m2: Vec<f64> = walls.map(|(wall, reflecting)| (wall - reflecting).max(0.0)).collect();
+        let absorbing_m2: Vec<f64> =
+            walls.map(|(wall, reflecting)| (wall - reflecting).max(LEAST_ABSORPTANCE * wall)).collect();
         let open_m2 = around.open_m2.clone();
         let part = curve.parts();
         let has_loss = has_loss(&part, &absorbing_m2, &open_m2, &around.wall_m2);
@@ -116,17 +117,15 @@ impl<'a> Circuit<'a> {
         }
     }
 
-    /// The light that walls spread, which send out these fluxes by node, W. Nothing in parts that lose nothing, where no light
-    /// would ever be enough.
+    /// The light that walls spread, which send out these fluxes by node, W.
     pub fn spread(&self, sources_w: &[f64]) -> Spread {
         let own_w_m2 = self.curve.around_each(|node, reached| {
             let sum: f64 = reached.nodes.iter().map(|&near| sources_w[near as usize]).sum();
             let wall_m2 = self.pools[node as usize].wall_m2;
             if wall_m2 > 0.0 { sum / wall_m2 } else { 0.0 }
         });
-        let fed = |node: usize| if self.has_loss[self.part[node] as usize] { self.coupling[node] } else { 0.0 };
-        let given_w_m2: Vec<f64> = own_w_m2.iter().enumerate().map(|(node, own)| 2.0 * fed(node) * own).collect();
-        let mut currents_w: Vec<f64> = sources_w.iter().enumerate().map(|(node, flux)| fed(node) * flux).collect();
+        let given_w_m2: Vec<f64> = own_w_m2.iter().zip(&self.coupling).map(|(own, fed)| 2.0 * fed * own).collect();
+        let mut currents_w: Vec<f64> = sources_w.iter().zip(&self.coupling).map(|(flux, fed)| fed * flux).collect();
         let textbook_w_m2 = self.textbook.potentials(&currents_w);
 
         for (&[a, b], conductance_m2) in self.curve.ends.iter().zip(&self.conductance_m2) {
@@ -201,7 +200,7 @@ fn kept(reflectance: f64) -> f64 {
     2.0 * reflectance / (1.0 + reflectance)
 }
 
-/// Whether the walls and openings of each part take anything.
+/// Whether the walls and openings of each part take more than the least.
 fn has_loss(part: &[u32], absorbing_m2: &[f64], open_m2: &[f64], wall_m2: &[f64]) -> Vec<bool> {
     let count = part.iter().max().map_or(0, |most| *most as usize + 1);
     let mut sums = vec![(0.0, 0.0); count];
@@ -209,5 +208,5 @@ fn has_loss(part: &[u32], absorbing_m2: &[f64], open_m2: &[f64], wall_m2: &[f64]
         sums[part as usize].0 += absorbing_m2[node] + open_m2[node];
         sums[part as usize].1 += wall_m2[node];
     }
-    sums.iter().map(|(loss_m2, wall_m2)| *loss_m2 > LEAST_ABSORPTANCE * wall_m2).collect()
+    sums.iter().map(|(loss_m2, wall_m2)| *loss_m2 > 2.0 * LEAST_ABSORPTANCE * wall_m2).collect()
 }

@@ -35,6 +35,9 @@ pub const LEAST_REFLECTANCE: f64 = 0.7;
 /// The qualities: bounces that rays carry before the rest is taken for diffuse.
 pub const BOUNCES: [u32; 4] = [0, 1, 2, 4];
 
+/// Up to so many lights are solved one by one, whether their shares are asked for or not, for the same bits.
+const FEW_LIGHTS: usize = 16;
+
 /// Irradiance at the probes by diffusion alone, no bounce carried by rays.
 ///
 /// # Errors
@@ -93,13 +96,13 @@ pub fn carried(
     Ok(Field { readings, warnings: warnings(model, &circuit, &around), shares })
 }
 
-/// The diffuse light of each emitter, or, where nobody asks for their shares, of all together.
+/// The diffuse light of each emitter, or, where they are many and nobody asks for their shares, of all together.
 fn diffused(circuit: &Circuit, landed: &[Landed], probes: &[Probe], shares: bool) -> Vec<Diffuse> {
     let mut asked = vec![false; circuit.part.len()];
     let nodes = probes.iter().filter_map(|probe| probe.place.ok());
     nodes.filter_map(|node| asked.get_mut(node.index()).map(|asked| *asked = true)).for_each(drop);
     let lights = landed.len();
-    let at_once = if shares { 1 } else { lights.max(1) };
+    let at_once = if shares || lights <= FEW_LIGHTS { 1 } else { lights };
     let groups: Vec<_> = (0..lights).step_by(at_once).map(|first| first..first + at_once).collect();
     let diffuse = |lights: std::ops::Range<usize>| {
         let spread = circuit.spread(&sources_w(circuit, &landed[lights.clone()]));
@@ -138,7 +141,7 @@ fn warnings(model: &Model, circuit: &Circuit, around: &Surroundings) -> Vec<Stri
     }
     if is_lit.iter().zip(&circuit.has_loss).any(|(is_lit, has_loss)| *is_lit && !has_loss) {
         let says =
-            "a void that is closed and absorbs nothing has no steady light: only what rays carry is counted there";
+            "a void that is closed and absorbs nothing has no steady light: its walls are taken to absorb a millionth";
         warnings.push(says.to_owned());
     }
     warnings
