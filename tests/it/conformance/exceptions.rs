@@ -17,6 +17,11 @@ pub const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("nothing outshines the light", BACKWARD, POINT_LIKE),
     ("nothing outshines the light", FORWARD, POINT_LIKE),
     (
+        "nothing outshines the light",
+        DIFFUSION,
+        "its diffuse light has one value across a room, which one black wall among white ones makes uneven",
+    ),
+    (
         "statuses",
         TRACE,
         "it knows neither void nor matter: what gets no light is dark, a sensor in matter sees its inside",
