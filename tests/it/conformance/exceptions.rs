@@ -40,7 +40,6 @@ pub const EXCEPTIONS: &[(&str, Method, &str)] = &[
     ("grey tube", Backward, NO_REFLECTANCE),
     ("grey tube", Forward, NO_REFLECTANCE),
     ("candid", Backward, "that it knows no reflectance is what it is, not a state that a run could be in"),
-    ("candid", Forward, "that it knows no reflectance is what it is, not a state that a run could be in"),
     ("truth", Backward, NO_REFLECTANCE),
     ("truth", Forward, NO_REFLECTANCE),
     ("own error", Backward, "a heuristic has no idea of its error"),
