@@ -23,7 +23,7 @@ pub fn stress_built_in(voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancelled
 }
 
 fn rows_of(built: &Built, voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancelled> {
-    let Built { failure, case, scene, samples_times } = built;
+    let Built { failure, case, scene, samples_times, is_shut } = built;
     let names = asked.contestants.iter().map(|contestant| &contestant.name);
     let mut rows: Vec<Row> = names.map(|name| Row::new(scene, *failure, case, name)).collect();
     let model = match asked.model(scene, scene.model.voxel_m.unwrap_or(voxel_m)) {
@@ -31,7 +31,7 @@ fn rows_of(built: &Built, voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancel
         Err(error) => return not_modelled(&mut rows, &error).map(|()| rows),
     };
     let samples = asked.trials.samples.saturating_mul(*samples_times);
-    let truth = asked.traced(scene, &model, samples, usize::MAX)?;
+    let truth = asked.traced(scene, &model, samples, usize::MAX, *is_shut)?;
 
     for (row, field) in rows.iter_mut().zip(asked.fields(scene, &model, asked.trials.seed)?) {
         row.add(&field, None, &truth);
