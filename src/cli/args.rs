@@ -37,6 +37,17 @@ pub enum Command {
         #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
         spp: Option<u32>,
     },
+    /// Speed against accuracy: every method at every quality, over one or more scenes, as pictures, a table and a text
+    Chart {
+        #[command(flatten)]
+        many: Many,
+        /// No run is begun that would take longer; points beyond are scaled from fewer sensors and marked
+        #[arg(long, value_name = "SECONDS", default_value_t = 20.0, value_parser = seconds)]
+        budget: f64,
+        /// A table of another program's points, as benches/peers/chart_mitsuba.py writes it; joins the scenes it names
+        #[arg(long, value_name = "FILE")]
+        peer: Vec<PathBuf>,
+    },
     /// Path-traced truth at the sensors with standard errors, as a reference file on stdout or in -o
     Trace {
         #[command(flatten)]
@@ -115,6 +126,35 @@ pub struct Common {
     /// Folder for the files; made if it is not there
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
+}
+
+/// What commands over several scenes take.
+#[derive(Debug, clap::Args)]
+pub struct Many {
+    /// Scene files (.toml)
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Edge of a voxel in metres; by default each scene file's, or one that is chosen
+    #[arg(long, value_name = "METRES", value_parser = edge_m)]
+    pub voxel: Option<f32>,
+    /// Threads to work on; by default one a core. The figures do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Seed of all random numbers
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// One JSON object on stdout instead of text
+    #[arg(long)]
+    pub json: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(short, long = "output", value_name = "DIR", required = true)]
+    pub output: PathBuf,
+}
+
+/// A time above 0.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if seconds.is_finite() && seconds > 0.0 { Ok(seconds) } else { Err("a budget is above 0 seconds".to_owned()) }
 }
 
 /// A length above 0.

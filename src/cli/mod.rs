@@ -4,12 +4,15 @@
 //! warnings to stderr.
 
 mod args;
+mod chart;
+mod peer;
 mod plan;
 mod report;
 mod run;
 mod stages;
 mod stress;
 mod table;
+mod tolerance;
 mod write;
 
 use crate::job::{Cancel, Cancelled};

@@ -9,14 +9,14 @@ use crate::scene::{Method, ModelChoice};
 pub struct Plan {
     /// Voxel edge, metres; `None` to choose one.
     pub voxel_m: Option<f32>,
-    /// The estimator of `analyse`.
-    pub method: Method,
+    /// The method of `analyse`; `None` to choose one.
+    pub method: Option<Method>,
     /// Seed, samples, bounces.
     pub settings: Settings,
     /// Threads to work on; `None` for one a core.
     pub threads: Option<usize>,
-    /// Whether a tolerance was given, which nothing answers to before there are two estimators to choose from.
-    pub has_tolerance: bool,
+    /// The factor within which `analyse` is to be right; `None` where none was given.
+    pub tolerance: Option<f64>,
 }
 
 impl Plan {
@@ -24,10 +24,10 @@ impl Plan {
     pub fn new(common: &Common, method: Option<Method>, settings: Settings, file: &ModelChoice) -> Self {
         Self {
             voxel_m: common.voxel.or(file.voxel_m),
-            method: method.or(file.method).unwrap_or(Method::Backward),
+            method: method.or(file.method),
             settings: Settings { seed: common.seed.or(file.seed).unwrap_or(0), ..settings },
             threads: common.threads.map(usize::from).or(file.threads),
-            has_tolerance: common.tolerance.or(file.tolerance).is_some(),
+            tolerance: common.tolerance.or(file.tolerance),
         }
     }
 }
@@ -53,10 +53,10 @@ mod tests {
         let file =
             ModelChoice { voxel_m: Some(0.1), method: Some(Method::Forward), seed: Some(7), ..Default::default() };
         let plan = Plan::new(&common(), None, Settings::default(), &file);
-        assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.1), Method::Forward, 7));
+        assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.1), Some(Method::Forward), 7));
 
         let typed = Common { voxel: Some(0.2), seed: Some(1), ..common() };
         let plan = Plan::new(&typed, Some(Method::Backward), Settings::default(), &file);
-        assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.2), Method::Backward, 1));
+        assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.2), Some(Method::Backward), 1));
     }
 }

@@ -9,6 +9,7 @@ use crate::model::Model;
 use crate::scene::{Reference, Scene};
 use crate::study::compare::Entry;
 use crate::study::errors::{Errors, angle_deg, is_good};
+use crate::study::tolerance::{Choice, Skipped};
 use serde::Serialize;
 
 /// `analyse --json`.
@@ -23,7 +24,39 @@ pub struct Analysis<'a> {
     stages: Vec<StageRow>,
     peak_memory_mb: Option<f64>,
     sensors: Vec<SensorRow<'a>>,
+    choice: Option<ChoiceRow<'a>>,
     warnings: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct ChoiceRow<'a> {
+    tolerance: f64,
+    method: &'a str,
+    voxel_m: f32,
+    expected_factor: Option<f64>,
+    inside: bool,
+    modelled: &'a [String],
+    skipped: Vec<SkippedRow<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct SkippedRow<'a> {
+    what: &'a str,
+    why: &'a str,
+}
+
+impl<'a> ChoiceRow<'a> {
+    fn of(choice: &'a Choice) -> Self {
+        Self {
+            tolerance: choice.tolerance,
+            method: &choice.method,
+            voxel_m: choice.voxel_m,
+            expected_factor: choice.expected_factor.filter(|factor| factor.is_finite()),
+            inside: choice.is_inside(),
+            modelled: &choice.modelled,
+            skipped: choice.skipped.iter().map(|Skipped { what, why }| SkippedRow { what, why }).collect(),
+        }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -57,6 +90,7 @@ impl<'a> Analysis<'a> {
         model: &Model,
         method: &'a str,
         field: &Field,
+        choice: Option<&'a Choice>,
         stages: &[Stage],
         warnings: &'a [String],
     ) -> Self {
@@ -88,6 +122,7 @@ impl<'a> Analysis<'a> {
                 .filter_map(|stage| stage.peak_memory_mb)
                 .fold(None, |most: Option<f64>, mb| Some(most.map_or(mb, |most| most.max(mb)))),
             sensors: sensors.collect(),
+            choice: choice.map(ChoiceRow::of),
             warnings,
         }
     }

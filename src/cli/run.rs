@@ -1,14 +1,15 @@
 //! The commands, each a list of steps.
 
 use super::args::{Args, Command, Common};
+use super::chart;
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::stages::{Stages, available_bytes};
 use super::stress;
-use super::tell;
 use super::write::{self, Analysed, Folder};
+use super::{tell, tolerance};
 use crate::export;
-use crate::flow::estimator;
+use crate::flow::{Estimator, estimator, ladder};
 use crate::job::{Cancel, Progress};
 use crate::light::{Settings, Sources};
 use crate::model::Model;
@@ -17,6 +18,7 @@ use crate::model::choose::choose_voxel_m;
 use crate::rays::Rays;
 use crate::scene::{Method, Reference, Scene};
 use crate::study::compare::{Contestant, Entry, compare};
+use crate::study::errors::errors;
 use crate::trace;
 use anyhow::{Context, Result};
 use std::io::{IsTerminal, Write};
@@ -30,6 +32,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
     match args.command {
         Command::Analyse { common, method } => run_analyse(&common, method, cancel),
         Command::Compare { common, methods, spp } => run_compare(&common, &methods, spp, cancel),
+        Command::Chart { many, budget, peer } => chart::run(&many, budget, &peer, cancel),
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
         Command::Stress(args) => stress::run(&args, cancel),
     }
@@ -39,24 +42,26 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
     let stages = Stages::new(std::io::stderr().is_terminal());
     let mut folder = common.output.as_deref().map(Folder::new).transpose()?;
     let (mut scene, plan) = open(common, method, Settings::default(), &stages, cancel)?;
-    let (model, mut warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
-    let entry = compare_one(&scene, &model, plan.method, &plan.settings, &stages, cancel)?;
-    warnings.extend(entry.field.warnings.iter().cloned());
+    let tolerance::Analysed { model, method, name, estimate, field, choice, warnings } = match plan.method {
+        Some(method) if plan.tolerance.is_none() || ladder(method).is_empty() => {
+            as_asked(&mut scene, method, &plan, &stages, cancel)?
+        }
+        _ => tolerance::analysed(&mut scene, &plan, &stages, cancel)?,
+    };
     warn(&warnings);
 
-    let name = plan.method.name();
     if let Some(folder) = &mut folder {
         let analysed = Analysed {
             scene: &scene,
             model: &model,
-            at_sensors: &entry.field,
-            estimate: estimator(plan.method),
+            at_sensors: &field,
+            estimate: estimate.as_deref(),
             settings: &plan.settings,
         };
         write::analysis(folder, &analysed, &stages, cancel)?;
     }
     let ended = stages.ended();
-    let analysis = Analysis::new(&scene, &model, name, &entry.field, &ended, &warnings);
+    let analysis = Analysis::new(&scene, &model, method.name(), &field, choice.as_ref(), &ended, &warnings);
     let json = serde_json::to_string(&analysis)?;
     if let Some(folder) = &mut folder {
         folder.file("report.json", |out| writeln!(out, "{json}"))?;
@@ -66,13 +71,30 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
         return say(&format!("{json}\n"));
     }
     let mut text = analysis.summary();
-    text += &format!("\n{}", report::sensor_table(&scene, name, &entry.field));
+    text += &choice.map_or_else(String::new, |choice| choice.lines().join("\n") + "\n");
+    text += &format!("\n{}", report::sensor_table(&scene, method.name(), &field));
+    let entry = Entry { name, errors: errors(&field.readings, &scene.reference), field };
     if entry.errors.counted > 0 {
         text +=
             &format!("\n{}", report::error_table(std::slice::from_ref(&entry), |entry| stages.seconds_of(&entry.name)));
     }
     text += &format!("\n{}", report::stage_table(&ended));
     say(&text)
+}
+
+/// The method that was asked for, at its default quality.
+fn as_asked(
+    scene: &mut Scene,
+    method: Method,
+    plan: &Plan,
+    stages: &Stages,
+    cancel: &Cancel,
+) -> Result<tolerance::Analysed> {
+    let (model, mut warnings) = prepare(scene, plan, stages, cancel)?;
+    let entry = compare_one(scene, &model, method, &plan.settings, stages, cancel)?;
+    warnings.extend(entry.field.warnings.iter().cloned());
+    let estimate = estimator(method).map(|estimate| -> Box<Estimator> { Box::new(estimate) });
+    Ok(tolerance::Analysed { model, method, name: entry.name, estimate, field: entry.field, choice: None, warnings })
 }
 
 fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &Cancel) -> Result<()> {
@@ -173,8 +195,8 @@ fn open(
 /// Share of the memory at hand that voxels and skeleton may take; the rest is for rays, fields and the system.
 const MEMORY_SHARE: f64 = 0.8;
 
-/// What voxels and skeleton may take, bytes.
-pub fn max_bytes() -> u64 {
+/// The most memory that voxels and skeleton may take, bytes.
+pub fn most_bytes() -> u64 {
     available_bytes().map_or(u64::MAX, |bytes| (bytes as f64 * MEMORY_SHARE) as u64)
 }
 
@@ -183,7 +205,7 @@ pub fn max_bytes() -> u64 {
 /// # Errors
 /// A grid that does not fit, or an interrupt.
 pub fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> Result<(Model, Vec<String>)> {
-    let max_bytes = max_bytes();
+    let max_bytes = most_bytes();
     stages.begin("rays", 0);
     let rays = Arc::new(Rays::new(scene));
     stages.end();
@@ -198,13 +220,14 @@ pub fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel)
     };
     let model = if scene.bare { light_bare_mesh(scene, model) } else { model };
 
-    let mut warnings = scene.warnings.clone();
-    warnings.extend(model.voxels.warnings.iter().cloned());
-    warnings.extend(missing(scene, &model.sources));
-    if plan.has_tolerance {
-        warnings.push("the tolerance chooses nothing yet: the method is --method, the voxels are --voxel".to_owned());
-    }
+    let warnings = warnings_of(scene, &model);
     Ok((model, warnings))
+}
+
+/// What loading and modelling warn of.
+pub fn warnings_of(scene: &Scene, model: &Model) -> Vec<String> {
+    let voxels = model.voxels.warnings.iter().cloned();
+    scene.warnings.iter().cloned().chain(voxels).chain(missing(scene, &model.sources)).collect()
 }
 
 /// What a run can do without but its user hardly meant to leave out, a sentence each.

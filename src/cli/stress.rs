@@ -2,7 +2,7 @@
 
 use super::args::{Common, StressArgs};
 use super::plan::Plan;
-use super::run::{max_bytes, prepare, say, warn};
+use super::run::{most_bytes, prepare, say, warn};
 use super::stages::Stages;
 use super::table::Table;
 use super::write::Folder;
@@ -78,7 +78,7 @@ pub fn run(args: &StressArgs, cancel: &Cancel) -> Result<()> {
         seeds: args.seeds,
         samples: args.spp,
         seed: args.seed.unwrap_or(0),
-        max_bytes: max_bytes(),
+        max_bytes: most_bytes(),
     };
     let contestants: Vec<Contestant> = methods(args).into_iter().map(Contestant::built_in).collect();
 

@@ -220,6 +220,6 @@ fn colour(value: f64, brightest: f64) -> String {
 }
 
 /// A name as XML text.
-fn escaped(name: &str) -> String {
+pub(super) fn escaped(name: &str) -> String {
     name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

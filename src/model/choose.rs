@@ -15,13 +15,15 @@ use std::sync::Arc;
 const FIRST_VOXELS_A_SIDE: f32 = 128.0;
 
 /// No voxel size is chosen by itself that gives more voxels than this.
-const MOST_VOXELS: usize = 200_000_000;
+pub const MOST_VOXELS: usize = 200_000_000;
 
 /// A voxel size that was chosen, the model made with it, and why.
 #[derive(Debug)]
 pub struct Chosen {
     /// The model at that size.
     pub model: Model,
+    /// The model of voxels half as large, where that was made and opens no new passage.
+    pub finer: Option<Model>,
     /// Why that size, a sentence.
     pub reason: String,
 }
@@ -49,13 +51,13 @@ pub fn choose_voxel_m(
         let too_many = 8 * model.voxels.lattice.voxels() > MOST_VOXELS;
         let finer = if too_many { None } else { Some(build(finer_m)) };
         match finer {
-            None => return Ok(chosen(model, "half of it would take over 200 million voxels")),
+            None => return Ok(chosen(model, None, "half of it would take over 200 million voxels")),
             Some(Err(ModelError::Voxel(VoxelError::TooLarge { .. }))) => {
-                return Ok(chosen(model, "half of it would not fit in memory"));
+                return Ok(chosen(model, None, "half of it would not fit in memory"));
             }
             Some(Err(error)) => return Err(error),
             Some(Ok(finer)) if finer.skeleton.shape() == model.skeleton.shape() => {
-                return Ok(chosen(model, "half of it opens no new passage"));
+                return Ok(chosen(model, Some(finer), "half of it opens no new passage"));
             }
             Some(Ok(finer)) => {
                 model = finer;
@@ -65,11 +67,11 @@ pub fn choose_voxel_m(
     }
 }
 
-fn chosen(model: Model, because: &str) -> Chosen {
+fn chosen(model: Model, finer: Option<Model>, because: &str) -> Chosen {
     let Shape { components, loops, necks } = model.skeleton.shape();
     let voxel_m = model.voxels.lattice.voxel_m;
     let reason = format!("voxels of {voxel_m:.4} m: {because} ({components} components, {loops} loops, {necks} necks)");
-    Chosen { model, reason }
+    Chosen { model, finer, reason }
 }
 
 #[cfg(test)]
@@ -94,10 +96,10 @@ mod tests {
     #[test]
     fn voxels_are_halved_until_the_slot_is_open() {
         let first_m = 8.0 / FIRST_VOXELS_A_SIDE;
-        let Chosen { model, reason } = chosen(0.0);
+        let Chosen { model, reason, .. } = chosen(0.0);
         assert_eq!((model.voxels.lattice.voxel_m, model.skeleton.necks.len()), (first_m, 0), "{reason}");
         // Less than a voxel of the first size.
-        let Chosen { model, reason } = chosen(0.06);
+        let Chosen { model, reason, .. } = chosen(0.06);
         assert!(model.voxels.lattice.voxel_m <= first_m / 2.0 && model.skeleton.necks.len() == 1, "{reason}");
         assert!(reason.contains("opens no new passage"), "{reason}");
     }

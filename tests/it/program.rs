@@ -190,6 +190,46 @@ fn trace_gives_rows_that_a_scene_can_refer_to() {
     assert!(rows.all(|row| row.split(',').count() == 6));
 }
 
+/// The whole command on a small scene: its files, its table, and that its front is one.
+#[test]
+fn chart_writes_its_files_and_marks_a_front_that_nothing_dominates() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("chart");
+    let peer = folder.path().join("peer.csv");
+    let head = "scene,method,quality,sensors,seconds,scaled,rms_factor,max_factor,lost";
+    fs::write(&peer, format!("{head}\ntwo_rooms,other,4 samples,7,0.5,false,inf,inf,3\n")).unwrap();
+    let paths = [out.to_str().unwrap(), peer.to_str().unwrap()];
+    let scene = "scenes/two_rooms/two_rooms.toml";
+    let output = run(&["chart", scene, "-o", paths[0], "--peer", paths[1], "--budget", "0.05", "--voxel", "0.2"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("for 1,000 sensors"), "{}", text(&output.stdout));
+    assert_eq!(fs::read_to_string(out.join("chart.txt")).unwrap(), text(&output.stdout));
+    assert!(fs::read(out.join("chart.png")).unwrap().starts_with(b"\x89PNG"));
+    assert!(fs::read_to_string(out.join("chart.svg")).unwrap().contains("two_rooms: 7 sensors"));
+
+    let table = fs::read_to_string(out.join("chart.csv")).unwrap();
+    let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let head = rows.next().unwrap();
+    let column = |name: &str| head.iter().position(|&cell| cell == name).unwrap();
+    let [method, sensors, pareto] = ["method", "sensors", "pareto"].map(column);
+    let rows: Vec<_> = rows.collect();
+    for wanted in ["backward", "forward", "trace", "other"] {
+        assert!(rows.iter().any(|row| row[method] == wanted), "{wanted} is missing");
+    }
+    let figures = |row: &[&str]| ["total_seconds", "rms_factor"].map(|name| row[column(name)].parse::<f64>().unwrap());
+    for row in rows.iter().filter(|row| row[pareto] == "true") {
+        let [time, error] = figures(row);
+        let rivals = rows.iter().filter(|rival| rival[sensors] == row[sensors]).map(|rival| figures(rival));
+        assert!(!rivals.into_iter().any(|[sooner, better]| sooner < time && better < error), "{row:?} is dominated");
+    }
+    for count in ["7", "1000", "10000", "100000"] {
+        assert!(rows.iter().any(|row| row[sensors] == count && row[pareto] == "true"), "no front for {count} sensors");
+    }
+    let alone = house(&folder.path().join("house"), &format!("{LAMP}{SENSORS}"));
+    refuses(&["chart", &alone, "-o", paths[0]], 1, "a chart needs a reference");
+    refuses(&["chart", scene], 2, "--output");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_it_with_130_and_leaves_nothing() {

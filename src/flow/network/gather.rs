@@ -94,7 +94,8 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
     let sights = sights(network, quality, from_m, probe.normal, cell, offset);
     let mut met: Vec<u32> = sights.iter().map(|sight| sight.patch).collect();
     met.sort_unstable();
-    let rays_to = |patch: u32| met.partition_point(|&other| other <= patch) - met.partition_point(|&other| other < patch);
+    let rays_to =
+        |patch: u32| met.partition_point(|&other| other <= patch) - met.partition_point(|&other| other < patch);
 
     let mut halves = [0.0; 2];
     let mut variants = [0.0; 3];
@@ -103,8 +104,13 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
         let reflects = f64::from(sight.at.answer.reflects);
         let cosine = probe.normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
         let weight = reflects * sight.weight;
-        let is_large = rays_to(sight.patch) >= std::env::var("LF").ok().and_then(|v| v.parse().ok()).unwrap_or(LARGE_FROM_RAYS);
-        let reflected_w_m2: f64 = if std::env::var("ZERO").is_ok() {0.0} else {network.reflected_w_m2.iter().map(|column| column[patch]).sum()};
+        let is_large =
+            rays_to(sight.patch) >= std::env::var("LF").ok().and_then(|v| v.parse().ok()).unwrap_or(LARGE_FROM_RAYS);
+        let reflected_w_m2: f64 = if std::env::var("ZERO").is_ok() {
+            0.0
+        } else {
+            network.reflected_w_m2.iter().map(|column| column[patch]).sum()
+        };
         let area_m2 = network.grounds.patches.list[patch].area_m2;
         let all_w_m2: f64 =
             reflected_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;
@@ -118,7 +124,8 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
             } else {
                 mean_w_m2
             };
-            let reflected_w_m2 = if network.reflected_w_m2.len() == lamps { network.reflected_w_m2[emitter][patch] } else { 0.0 };
+            let reflected_w_m2 =
+                if network.reflected_w_m2.len() == lamps { network.reflected_w_m2[emitter][patch] } else { 0.0 };
             row[emitter] += weight * cosine * (landing_w_m2 + reflected_w_m2);
             arriving_w_m2 += landing_w_m2;
         }
@@ -146,10 +153,8 @@ fn sights(
     cell: u32,
     offset: [f64; 2],
 ) -> Vec<Sight> {
-    let portals: Vec<&super::Portal> = (network.grounds.portals.iter())
-        .filter(|portal| portal.cells.contains(&cell))
-        .take(MOST_NECKS)
-        .collect();
+    let portals: Vec<&super::Portal> =
+        (network.grounds.portals.iter()).filter(|portal| portal.cells.contains(&cell)).take(MOST_NECKS).collect();
     let count = quality.gather_rays;
     let over_all = (0..count).map(|ray| match normal {
         None => sequence::spiral(ray, count, offset),
@@ -167,7 +172,9 @@ fn sights(
     let density_per_sr = |direction: Vec3| {
         let over_all = match normal {
             None => f64::from(count) / (4.0 * PI),
-            Some(normal) => f64::from(count) / 2.0 * (f64::from(normal.dot(direction)).max(0.0) / PI + 1.0 / (2.0 * PI)),
+            Some(normal) => {
+                f64::from(count) / 2.0 * (f64::from(normal.dot(direction)).max(0.0) / PI + 1.0 / (2.0 * PI))
+            }
         };
         let to_necks = portals.iter().filter_map(|portal| {
             let crossing = portal.crossing(from_m, direction, f32::INFINITY)?;

@@ -78,7 +78,12 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, seed: u6
                 let random = sequence::square(ray, offset);
                 let (irradiance_w_m2, share) = straight(grounds, shining.emitter, start, random)?;
                 let flux_w = share * irradiance_w_m2 / density_per_m2(patch, irradiance_w_m2);
-                Some(Portion { patch: patch as u32, flux_w, reflects: start.answer.reflects, passes: start.answer.passes })
+                Some(Portion {
+                    patch: patch as u32,
+                    flux_w,
+                    reflects: start.answer.reflects,
+                    passes: start.answer.passes,
+                })
             };
             (0..count).filter_map(shadow).collect()
         })

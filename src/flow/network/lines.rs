@@ -49,7 +49,8 @@ pub fn lines(grounds: &Grounds, quality: &Quality, seed: u64) -> Vec<Line> {
         let starts = patches.list[patch].starts.clone();
         let offset = sequence::offset(seed, patch as u64);
         starts.enumerate().filter_map(move |(number, start)| {
-            let direction = sequence::cosine_about(patches.starts[start].normal, sequence::square(number as u32, offset));
+            let direction =
+                sequence::cosine_about(patches.starts[start].normal, sequence::square(number as u32, offset));
             from_wall(grounds, patch as u32, &patches.starts[start], direction, number)
         })
     };
@@ -61,7 +62,8 @@ pub fn lines(grounds: &Grounds, quality: &Quality, seed: u64) -> Vec<Line> {
         let direction = sequence::cosine_about(portal_of.normal, sequence::square(index as u32, other));
         through(grounds, at_m, direction, index)
     };
-    let mut all: Vec<Line> = (0..patches.list.len()).into_par_iter().with_min_len(8).flat_map_iter(from_patch).collect();
+    let mut all: Vec<Line> =
+        (0..patches.list.len()).into_par_iter().with_min_len(8).flat_map_iter(from_patch).collect();
     let through_necks: Vec<Line> = (0..grounds.portals.len() * quality.neck_lines as usize)
         .into_par_iter()
         .with_min_len(CHUNK)
@@ -69,7 +71,8 @@ pub fn lines(grounds: &Grounds, quality: &Quality, seed: u64) -> Vec<Line> {
         .collect();
     all.extend(through_necks);
     let neck_lines = f64::from(quality.neck_lines);
-    all.par_iter_mut().for_each(|line| line.weight_m2 = 1.0 / density_per_m2(patches, &grounds.portals, neck_lines, line));
+    all.par_iter_mut()
+        .for_each(|line| line.weight_m2 = 1.0 / density_per_m2(patches, &grounds.portals, neck_lines, line));
     all
 }
 
@@ -85,7 +88,7 @@ fn from_wall(grounds: &Grounds, patch: u32, start: &Start, direction: Vec3, numb
     }
     let behind = walk(grounds, start.position_m - lift_m, -direction)?;
     let other = Start { normal: -start.normal, ..*start };
-    let sides = [grounds.patch_at(&other, -direction)?, patch];
+    let sides = [grounds.patch_at(&other, -direction, 0.0)?, patch];
     let pane = Pane { sides, at: Start { normal: -start.normal, ..*start } };
     Some(joined(start.position_m, direction, behind, Some(pane), ahead, odd))
 }

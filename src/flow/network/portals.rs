@@ -139,7 +139,8 @@ mod tests {
     fn what_passes_beside_it_does_not_cross() {
         let door = door();
         let (u, v) = (door.axes[0], door.axes[1]);
-        for (x, y, inside) in [(0.6, 1.2, true), (0.8, 0.0, false), (-0.2, -0.3, true), (-0.4, 0.5, false), (0.1, -0.5, false)]
+        for (x, y, inside) in
+            [(0.6, 1.2, true), (0.8, 0.0, false), (-0.2, -0.3, true), (-0.4, 0.5, false), (0.1, -0.5, false)]
         {
             let at_m = door.centre_m + x * u + y * v;
             let found = door.crossing(at_m - 2.0 * door.normal, door.normal, 9.0);
