@@ -26,14 +26,6 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// The JSON object that a run prints.
-#[track_caller]
-pub fn json(arguments: &[&str]) -> Value {
-    let output = run(arguments);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
 /// Exit code `code`, nothing on stdout, and an error that says `says`.
 #[track_caller]
 fn refuses(arguments: &[&str], code: i32, says: &str) {
@@ -93,7 +85,7 @@ fn a_grid_that_does_not_fit_says_which_voxel_would() {
 
 #[test]
 fn any_number_of_threads_runs_and_gives_the_same_figures() {
-    let sensors = |threads| json(&["analyse", GALLERY, "--json", "--threads", threads])["sensors"].clone();
+    let sensors = |threads| json(&["analyse", GALLERY, "--threads", threads]).0["sensors"].clone();
     assert_eq!(sensors("1"), sensors("3"));
 }
 
@@ -303,7 +295,7 @@ fn house(folder: &Path, rest: &str) -> String {
 
 /// The object that `--json` gives, and what stderr says.
 #[track_caller]
-fn json(arguments: &[&str]) -> (Value, String) {
+pub fn json(arguments: &[&str]) -> (Value, String) {
     let output = lightvein(arguments).arg("--json").output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
     (serde_json::from_slice(&output.stdout).unwrap(), text(&output.stderr))

@@ -20,8 +20,8 @@ fn a_scene_is_disturbed_and_every_method_has_its_rows() {
     let disturbances = "grid_shift,turn,seed,voxel_size,wall_noise,reflectance";
     let mut arguments = vec!["stress", TWO_ROOMS, "--rows", disturbances, "--methods", "backward,forward,backward"];
     arguments.extend(FEW);
-    arguments.extend(["--json", "-o", out.to_str().unwrap()]);
-    let output = json(&arguments);
+    arguments.extend(["-o", out.to_str().unwrap()]);
+    let (output, _) = json(&arguments);
 
     // One case each of shift, turn and seed, four voxel sizes, two noises, six reflectances; a method named twice runs once.
     assert_eq!(rows(&output).len(), 2 * (3 + 4 + 2 + 6));
@@ -60,9 +60,9 @@ fn without_a_scene_the_built_in_ones_are_asked() {
 fn the_same_figures_on_one_thread_and_on_two() {
     let of = |threads| {
         let mut arguments =
-            vec!["stress", TWO_ROOMS, "--rows", "grid_shift,wall_noise", "--json", "--threads", threads];
+            vec!["stress", TWO_ROOMS, "--rows", "grid_shift,wall_noise", "--threads", threads];
         arguments.extend(FEW);
-        json(&arguments)["rows"].clone()
+        json(&arguments).0["rows"].clone()
     };
     assert_eq!(of("1"), of("2"));
 }
