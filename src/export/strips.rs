@@ -19,7 +19,7 @@ const HEAD: f64 = 54.0;
 const MOST_FACTOR: f64 = 1000.0;
 
 /// Dots a strip: of more answers this many evenly from least to greatest are drawn.
-const MOST_DOTS: usize = 80;
+const MOST_DOTS: usize = 40;
 
 /// Colours of methods in their order: told apart by those who see no red or green (Okabe & Ito 2008).
 const COLOURS: [&str; 6] = ["#d55e00", "#e69f00", "#0072b2", "#009e73", "#cc79a7", "#555555"];
@@ -158,12 +158,14 @@ fn draw_names(out: &mut dyn Write, strip: &Strip, before: Option<&Strip>, top: f
 fn draw_dots(out: &mut dyn Write, factors: &[f64], left: f64, top: f64, colour: &str) -> io::Result<()> {
     let y = top + 0.5 * STRIP;
     let shown = factors.len().min(MOST_DOTS);
+    writeln!(out, r#"<g fill="{colour}" fill-opacity="0.45">"#)?;
     for place in 0..shown {
         // Both ends are drawn.
         let number = if shown > 1 { place * (factors.len() - 1) / (shown - 1) } else { 0 };
         let x = left + along(factors[number]);
-        writeln!(out, r#"<circle cx="{x:.1}" cy="{y:.1}" r="2.2" fill="{colour}" fill-opacity="0.45"/>"#)?;
+        writeln!(out, r#"<circle cx="{x:.1}" cy="{y:.1}" r="2.2"/>"#)?;
     }
+    writeln!(out, "</g>")?;
     let p95 = Spread { factors: factors.to_vec(), ..Spread::default() }.p95();
     if let Some(x) = p95.map(|factor| left + along(factor)) {
         let (from, to) = (top + 0.5, top + STRIP - 0.5);
