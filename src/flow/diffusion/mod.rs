@@ -32,6 +32,9 @@ use surroundings::Surroundings;
 /// Below this mean reflectance the field is a preview.
 pub const LEAST_REFLECTANCE: f64 = 0.7;
 
+/// A mean of reflectances in `f32` is not told apart from one that is that much greater.
+const ROUNDING: f64 = 1e-6;
+
 /// The qualities: bounces that rays carry before the rest is taken for diffuse.
 pub const BOUNCES: [u32; 4] = [0, 1, 2, 4];
 
@@ -242,7 +245,7 @@ fn warnings(model: &Model, circuit: &Circuit, around: &Surroundings) -> Vec<Stri
         reflecting_m2 += around.reflecting_m2[node];
     }
     let reflectance = if wall_m2 > 0.0 { reflecting_m2 / wall_m2 } else { 0.0 };
-    if !lit.is_empty() && reflectance < LEAST_REFLECTANCE {
+    if !lit.is_empty() && reflectance < LEAST_REFLECTANCE - ROUNDING {
         warnings.push(format!(
             "a mean reflectance of {reflectance:.2}: below {LEAST_REFLECTANCE} the diffusion of light is a preview, too dark by orders \
              of magnitude at the end of long runs"
