@@ -56,7 +56,8 @@ pub fn gather(
         })
         .collect();
     progress.end();
-    let (readings, rows): (Vec<Reading>, Vec<Vec<f64>>) = answers?.into_iter().unzip();
+    let (mut readings, rows): (Vec<Reading>, Vec<Vec<f64>>) = answers?.into_iter().unzip();
+    network.grounds.model.tell_unreached(probes, &mut readings);
     let shares = settings.shares.then(|| Shares {
         emitters: network.grounds.model.shining.len(),
         values_w_m2: rows.into_iter().flatten().collect(),

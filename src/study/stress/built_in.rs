@@ -84,6 +84,26 @@ mod tests {
     }
 
     #[test]
+    fn no_method_sees_light_through_matter() {
+        let failures = [Failure::ThinWall, Failure::InSolid, Failure::SeparateVoids];
+        let trials = Trials { failures: failures.into(), samples: 8, ..Trials::default() };
+        let methods = Method::ALL.into_iter().filter(|&method| method != Method::Trace);
+        let contestants: Vec<Contestant> = methods.map(Contestant::built_in).collect();
+        let asked = Asked { contestants: &contestants, trials: &trials, progress: &Quiet, cancel: &Cancel::new() };
+        for row in stress_built_in(0.1, asked).unwrap() {
+            let shut = row.case.ends_with("shut") || row.case.starts_with("the light in");
+            assert_eq!(row.truth.phantom, 0, "{} {}: light where there is none", row.case, row.method);
+            assert!(
+                !shut || row.statuses.unreached == row.sensors.len(),
+                "{} {}: {:?}",
+                row.case,
+                row.method,
+                row.statuses
+            );
+        }
+    }
+
+    #[test]
     fn openings_that_close_are_named() {
         let dark = ("hole of", "3 unreached", "1 opening(s) close");
         check(Failure::Keyhole, &[("hole of 4", "3 ok", ""), ("hole of 2", "3 ok", ""), dark, dark]);
