@@ -6,6 +6,7 @@
 //! at the very point, by a shadow ray, for there a patch is large against what the sensor can tell apart; where it sees it
 //! with few, its mean is the better answer.
 
+use super::balance::MOST_REFLECTANCE;
 use super::patches::Start;
 use super::walk::{End, walk};
 use super::{Network, Quality};
@@ -13,7 +14,7 @@ use crate::flow::direct::direct;
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Shares, Status};
-use crate::model::Probe;
+use crate::model::{Model, Probe};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -62,7 +63,16 @@ pub fn gather(
         emitters: network.grounds.model.shining.len(),
         values_w_m2: rows.into_iter().flatten().collect(),
     });
-    Ok(Field { readings, warnings: Vec::new(), shares })
+    Ok(Field { readings, warnings: warnings(network.grounds.model), shares })
+}
+
+/// What a reader of the field should know.
+fn warnings(model: &Model) -> Vec<String> {
+    let leaks = model.voxels.voids.iter().any(|void| void.leaks);
+    let mut answers = model.walls.answers.iter();
+    let absorbs_nothing = !leaks && answers.all(|answer| f64::from(answer.reflects) >= MOST_REFLECTANCE);
+    let says = "a closed void whose walls absorb nothing has no steady light: they were taken to reflect";
+    absorbs_nothing.then(|| format!("{says} {MOST_REFLECTANCE}")).into_iter().collect()
 }
 
 /// A ray from a sensor and what it meets.
