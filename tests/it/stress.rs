@@ -59,8 +59,7 @@ fn without_a_scene_the_built_in_ones_are_asked() {
 #[test]
 fn the_same_figures_on_one_thread_and_on_two() {
     let of = |threads| {
-        let mut arguments =
-            vec!["stress", TWO_ROOMS, "--rows", "grid_shift,wall_noise", "--threads", threads];
+        let mut arguments = vec!["stress", TWO_ROOMS, "--rows", "grid_shift,wall_noise", "--threads", threads];
         arguments.extend(FEW);
         json(&arguments).0["rows"].clone()
     };

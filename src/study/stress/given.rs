@@ -118,7 +118,8 @@ fn roughly(before: &Undisturbed) -> Result<Vec<Row>, Cancelled> {
         let [amplitude_m, bump_m] = [voxels, BUMP_VOXELS].map(|voxels| voxels * before.voxel_m());
         let scene = roughened(before.scene, amplitude_m, bump_m, asked.trials.seed);
         let model = asked.model(&scene, before.voxel_m());
-        let truth = model.as_ref().map(|model| asked.traced(&scene, model, asked.trials.samples, TRACED_SENSORS, false));
+        let truth =
+            model.as_ref().map(|model| asked.traced(&scene, model, asked.trials.samples, TRACED_SENSORS, false));
         before.add(&mut rows, &scene, &model, &truth.unwrap_or(Ok(Vec::new()))?, |field| field)?;
         Ok(rows)
     };
