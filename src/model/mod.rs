@@ -9,7 +9,7 @@ pub mod faces;
 pub mod walls;
 
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Aim, Emitter, Reading, Sampler, Shape, Sources, Status};
+use crate::light::{Aim, Emitter, Sampler, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
@@ -194,25 +194,6 @@ impl Model {
     pub fn straight_share(&self, from_m: Vec3, light: &Shining) -> f64 {
         let emitter = self.sources.emitters.get(light.emitter);
         emitter.map_or(0.0, |emitter| f64::from(emitter.seen_from(&self.rays, from_m)))
-    }
-
-    /// Gives sensors that got no light for want of a way through the void their status: what is [`Status::Dark`] and joined
-    /// to no light that shines becomes [`Status::Unreached`]. `readings` are those at `probes`. Linear in nodes and edges.
-    pub fn tell_unreached(&self, probes: &[Probe], readings: &mut [Reading]) {
-        let graph = &self.skeleton.graph;
-        let lit = self.shining.iter().filter(|light| light.flux_w > 0.0).filter_map(|light| light.place.ok());
-        let mut is_reached = vec![false; graph.node_count()];
-        let mut open: Vec<NodeIndex> = lit.collect();
-        while let Some(node) = open.pop() {
-            if !std::mem::replace(&mut is_reached[node.index()], true) {
-                open.extend(graph.neighbors(node));
-            }
-        }
-        for (reading, probe) in readings.iter_mut().zip(probes).filter(|(reading, _)| reading.status == Status::Dark) {
-            if probe.place.is_ok_and(|node| !is_reached.get(node.index()).copied().unwrap_or(false)) {
-                reading.status = Status::Unreached;
-            }
-        }
     }
 
     /// Half a voxel, metres: nearer than that the skeleton tells no distances apart.

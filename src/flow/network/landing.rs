@@ -53,7 +53,7 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, seed: u6
     }
     let lamps = grounds.model.shining.len() as u32;
     let photons = (quality.photons / lamps.max(1)).max(LEAST_PHOTONS);
-    let shadows = |patch: usize| (grounds.patches.list[patch].starts.len() as u32).min(quality.shadow_rays);
+    let shadows = |patch: usize| shadow_rays(grounds, quality, shining, patch);
     let shadows_per_m2 = |patch: usize| f64::from(shadows(patch)) / grounds.patches.list[patch].area_m2;
     // The density of both ways together, per m2, where the unshadowed irradiance is that.
     let share = f64::from(photons) / shining.flux_w;
@@ -101,6 +101,22 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, seed: u6
         landing.flux_w.iter_mut().chain(&mut landing.reflected_w).for_each(|flux_w| *flux_w *= exact);
     }
     landing
+}
+
+/// How many shadow rays go from a patch to a light: of all that the patch has, the light's share by flux over squared
+/// distance, whatever lies between. A light that gets none is left to its photons.
+fn shadow_rays(grounds: &Grounds, quality: &Quality, shining: &Shining, patch: usize) -> u32 {
+    let patch = &grounds.patches.list[patch];
+    let starts = patch.starts.len() as u32;
+    let Some(start) = grounds.patches.starts.get(patch.starts.start) else { return 0 };
+    let nearest_m2 = patch.area_m2.max(f64::MIN_POSITIVE);
+    let promise = |shining: &Shining| {
+        let squared_m2 = f64::from(start.position_m.distance_squared(shining.position_m));
+        shining.flux_w / squared_m2.max(nearest_m2)
+    };
+    let all: f64 = grounds.model.shining.iter().map(promise).sum();
+    let most = f64::from(starts.min(quality.shadow_rays));
+    (most * (2.0 * promise(shining) / all).min(1.0)).round() as u32
 }
 
 /// What one photon leaves on the patches it meets, and the share of it that is lost.
