@@ -87,6 +87,7 @@ impl Search<'_> {
             }
             let Some(fine) = next else {
                 modelled.extend(quality.modelled);
+                skipped.push(sky(&model));
                 let method = rungs[quality.rung].label();
                 let choice = Choice { tolerance, voxel_m, method, expected_factor, modelled, skipped };
                 return Ok(Some(Chosen { model, rung: quality.rung, field: quality.field, choice }));
@@ -156,6 +157,14 @@ impl Search<'_> {
             Some(Quality { rung, field, expected_factor: None, modelled, skipped })
         }))
     }
+}
+
+/// Why no light comes from the sky.
+fn sky(model: &Model) -> Skipped {
+    let is_open = model.voxels.voids.iter().any(|part| part.leaks);
+    let why =
+        if is_open { "the void is open to it, but no method here takes light from it" } else { "the void is sealed" };
+    Skipped { what: "sky".to_owned(), why: why.to_owned() }
 }
 
 /// The model of voxels half as large; `None` where it would not fit.
