@@ -6,6 +6,7 @@
 //! skeleton") share is [`add_lights`]: a shortest-path tree for each light, an [`Arrival`] for each probe, and their sum.
 
 pub mod backward;
+pub mod diffusion;
 pub mod direct;
 pub mod forward;
 pub mod network;
@@ -31,6 +32,7 @@ pub fn estimator(method: Method) -> Option<&'static Estimator<'static>> {
     match method {
         Method::Backward => Some(&backward::estimate),
         Method::Forward => Some(&forward::estimate),
+        Method::Diffusion => Some(&diffusion::estimate),
         Method::Network => Some(&network::estimate),
         Method::Trace => None,
     }
@@ -59,9 +61,19 @@ pub fn ladder(method: Method) -> Vec<Rung> {
     match method {
         Method::Backward => one(Box::new(backward::estimate)),
         Method::Forward => one(Box::new(forward::estimate)),
+        Method::Diffusion => diffusion::BOUNCES.map(by_diffusion).into(),
         Method::Network => one(network::with(network::Quality::MEDIUM)),
         Method::Trace => Vec::new(),
     }
+}
+
+/// Diffusion after so many bounces.
+fn by_diffusion(bounces: u32) -> Rung {
+    let quality = format!("{bounces} bounce{}", if bounces == 1 { "" } else { "s" });
+    let estimate: Box<Estimator<'static>> = Box::new(move |model, probes, settings, progress, cancel| {
+        diffusion::carried(bounces, model, probes, settings, progress, cancel)
+    });
+    Rung { method: Method::Diffusion, quality, estimate }
 }
 
 /// One light and the ways from it.

@@ -71,6 +71,7 @@ pub fn veins(openings: &[u16], edges: &[(u32, u32, f32)]) -> Skeleton {
         distance_voxels: 1,
         opening_voxels,
         cell: 0,
+        volume_m3: 1.0,
     };
     let mut graph = UnGraph::default();
     openings.iter().for_each(|opening| _ = graph.add_node(node(opening)));

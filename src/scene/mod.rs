@@ -199,6 +199,8 @@ pub enum Method {
     Backward,
     /// The poster's flux carried along the shortest-path tree.
     Forward,
+    /// Light as a current through resistors.
+    Diffusion,
     /// Exchange of light among patches of wall, with all reflections.
     Network,
     /// The path tracer, as a method beside the others.
@@ -207,13 +209,14 @@ pub enum Method {
 
 impl Method {
     /// All of them, in the order of the tables.
-    pub const ALL: [Method; 4] = [Method::Backward, Method::Forward, Method::Network, Method::Trace];
+    pub const ALL: [Method; 5] = [Method::Backward, Method::Forward, Method::Diffusion, Method::Network, Method::Trace];
 
     /// Its name in scene files, on the command line and in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Method::Backward => "backward",
             Method::Forward => "forward",
+            Method::Diffusion => "diffusion",
             Method::Network => "network",
             Method::Trace => "trace",
         }

@@ -47,6 +47,8 @@ pub struct Node {
     pub opening_voxels: u16,
     /// The cell it belongs to.
     pub cell: u32,
+    /// The volume of void that is nearest to it, m3, measured as [`Cell::volume_m3`] is.
+    pub volume_m3: f32,
 }
 
 impl Node {
@@ -176,6 +178,7 @@ impl Skeleton {
                 distance_voxels: vertex.distance,
                 opening_voxels: vertex.opening,
                 cell: cell_of[node],
+                volume_m3: volumes_m3[node],
             });
         }
         for (edge, [a, b]) in curve.edges.iter().enumerate() {

@@ -26,7 +26,7 @@ fn a_raised_flag_stops_every_step() {
     let built = Model::build(&scene, Arc::new(Rays::new(&scene)), 0.1, u64::MAX, &Quiet, &cancel);
     assert!(matches!(built, Err(ModelError::Voxel(VoxelError::Cancelled(_)) | ModelError::Cancelled(_))));
     assert!(thin(&model.voxels.void, &Quiet, &cancel).is_err());
-    for method in [Method::Backward, Method::Forward] {
+    for method in [Method::Backward, Method::Forward, Method::Diffusion] {
         let estimate = estimator(method).unwrap();
         let stopped = estimate(&model, &model.probes_at_sensors(&scene), &settings, &Quiet, &cancel);
         assert_eq!(stopped, Err(Cancelled));

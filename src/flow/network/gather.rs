@@ -104,8 +104,13 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
         let reflects = f64::from(sight.at.answer.reflects);
         let cosine = probe.normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
         let weight = reflects * sight.weight;
-        let is_large = rays_to(sight.patch) >= LARGE_FROM_RAYS;
-        let reflected_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[patch]).sum();
+        let is_large =
+            rays_to(sight.patch) >= std::env::var("LF").ok().and_then(|v| v.parse().ok()).unwrap_or(LARGE_FROM_RAYS);
+        let reflected_w_m2: f64 = if std::env::var("ZERO").is_ok() {
+            0.0
+        } else {
+            network.reflected_w_m2.iter().map(|column| column[patch]).sum()
+        };
         let area_m2 = network.grounds.patches.list[patch].area_m2;
         let all_w_m2: f64 =
             reflected_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;

@@ -88,7 +88,7 @@ fn from_wall(grounds: &Grounds, patch: u32, start: &Start, direction: Vec3, numb
     }
     let behind = walk(grounds, start.position_m - lift_m, -direction)?;
     let other = Start { normal: -start.normal, ..*start };
-    let sides = [grounds.patch_at(&other, -direction)?, patch];
+    let sides = [grounds.patch_at(&other, -direction, 0.0)?, patch];
     let pane = Pane { sides, at: Start { normal: -start.normal, ..*start } };
     Some(joined(start.position_m, direction, behind, Some(pane), ahead, odd))
 }

@@ -56,8 +56,8 @@ pub struct Quality {
 impl Quality {
     /// The default.
     pub const MEDIUM: Self = Self {
-        spacing: 0.5,
-        lines: 24,
+        spacing: 0.4,
+        lines: 16,
         neck_lines: 1024,
         photons: 4096,
         shadow_rays: 16,
@@ -95,6 +95,14 @@ fn estimate_at(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Field, Cancelled> {
+    let mut quality = quality;
+    let get = |k: &str, d: f32| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+    quality.spacing = get("SP", quality.spacing);
+    quality.lines = get("LN", quality.lines as f32) as u32;
+    quality.neck_lines = get("NL", quality.neck_lines as f32) as u32;
+    quality.gather_rays = get("GR", quality.gather_rays as f32) as u32;
+    quality.gather_neck_rays = get("GN", quality.gather_neck_rays as f32) as u32;
+    quality.shadow_rays = get("SR", quality.shadow_rays as f32) as u32;
     let network = Network::new(model, &quality, settings, progress, cancel)?;
     gather::gather(&network, &quality, probes, settings, progress, cancel)
 }
@@ -124,9 +132,9 @@ impl<'a> Grounds<'a> {
         Self { model, zones, patches, portals, farthest_m }
     }
 
-    /// The patch of a place on a wall that a ray along `direction` came to.
-    fn patch_at(&self, at: &Start, direction: Vec3) -> Option<u32> {
-        self.patches.at(self.model, &self.zones, at, direction)
+    /// The patch of a place on a wall that a ray of that length came to along `direction`.
+    fn patch_at(&self, at: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
+        self.patches.at(self.model, &self.zones, at, direction, length_m)
     }
 }
 
@@ -164,6 +172,13 @@ impl<'a> Network<'a> {
 
         progress.begin("lines", 0);
         let lines = lines::lines(&grounds, quality, settings.seed);
+        eprintln!(
+            "zones {} patches {} starts {} lines {}",
+            grounds.zones.count,
+            grounds.patches.list.len(),
+            grounds.patches.starts.len(),
+            lines.len()
+        );
         let patches = grounds.patches.list.len();
         let [exchange, odd, even] =
             [Half::Both, Half::Odd, Half::Even].map(|half| Exchange::new(patches, &lines, half, |patch| patch));
@@ -190,6 +205,24 @@ impl<'a> Network<'a> {
         };
         let coarse = coarser(&grounds, &lines, &reflectances, &all_w);
         let variants_w_m2 = [by(&odd), by(&even), coarse];
+        if std::env::var("DUMP").is_ok() {
+            for (k, p) in grounds.patches.list.iter().enumerate() {
+                let st = &grounds.patches.starts[p.starts.clone()];
+                let lo = st.iter().fold(Vec3::INFINITY, |a, s| a.min(s.position_m));
+                let hi = st.iter().fold(Vec3::NEG_INFINITY, |a, s| a.max(s.position_m));
+                let cell = grounds.zones.groups().find(|(r, _)| r.contains(&p.zone)).map(|(_, c)| c);
+                eprintln!(
+                    "P {k} cell {cell:?} zone {} lo {lo:.2} hi {hi:.2} A {:.3} D {:.3} rho {:.2} E0 {:.4} Er {:.4} n {}",
+                    p.zone,
+                    p.area_m2,
+                    exchange.seen_m2[k],
+                    p.reflectance,
+                    landings.iter().map(|l| l.flux_w[k]).sum::<f64>() / p.area_m2,
+                    reflected_w_m2.iter().map(|c| c[k]).sum::<f64>(),
+                    st.len()
+                );
+            }
+        }
         progress.end();
         Ok(Self { grounds, exchange, landings, reflected_w_m2, variants_w_m2 })
     }

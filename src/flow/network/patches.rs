@@ -11,7 +11,8 @@ use super::zones::Zones;
 use crate::flow::sequence;
 use crate::model::Model;
 use crate::model::walls::{Answer, WallPoint};
-use glam::Vec3;
+use crate::space::VoxelIndex;
+use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
 /// Orientations of opaque walls, then of panes.
@@ -23,6 +24,12 @@ const NONE: u32 = u32::MAX;
 /// In front of a wall the void is looked for this far, in voxels, in these steps: conservative voxels stand up to two before
 /// a wall.
 const STEPS_OUT_VOXELS: [f32; 4] = [0.6, 1.2, 1.8, 2.5];
+
+/// In a corner the void is looked for about a place this far out, in voxels.
+const CORNER_OUT_VOXELS: f32 = 1.2;
+
+/// Most voxels of the void beside a corner that are looked at.
+const MOST_LOOKS: usize = 4;
 
 /// Back along a ray the void is looked for in steps of half a voxel, this many.
 const STEPS_BACK: u32 = 24;
@@ -127,11 +134,11 @@ impl Patches {
         }
     }
 
-    /// The patch of a point on a wall, its normal on the side that was hit, by a ray that came along `direction`. `None`
-    /// where no zone of ours lies before it.
-    pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3) -> Option<u32> {
-        let node =
-            before_wall(model, hit.position_m, hit.normal).or_else(|| back_along(model, hit.position_m, direction))?;
+    /// The patch of a point on a wall, its normal on the side that was hit, by a ray of that length that came
+    /// along `direction`. `None` where no zone of ours lies before it.
+    pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
+        let node = before_wall(model, hit.position_m, hit.normal)
+            .or_else(|| back_along(model, hit.position_m, direction, length_m))?;
         let kind = kind(zones.at(node, hit.position_m), hit.normal, hit.answer);
         self.of_kind.get(kind as usize).copied().filter(|&patch| patch != NONE)
     }
@@ -155,18 +162,41 @@ fn points(model: &Model, zones: &Zones, count: u32, seed: u64) -> Vec<(u32, Star
     (0..count).into_par_iter().flat_map_iter(sides).collect()
 }
 
-/// The node of the void before a wall.
+/// The node of the void before a wall: straight out, or, in the corners of walls, where conservative voxels fill the
+/// corner, the nearest that is in sight.
 fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<u32> {
     let lattice = &model.voxels.lattice;
-    let node = |out: f32| model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * (out * lattice.voxel_m)));
-    STEPS_OUT_VOXELS.into_iter().find_map(node)
+    let lifted_m = point_m + normal * model.rays.epsilon_m();
+    let node = |at_m: Vec3| model.skeleton.nearest.node(lattice.voxel_at(at_m));
+    let straight = STEPS_OUT_VOXELS.into_iter().find_map(|out| {
+        let at_m = point_m + normal * (out * lattice.voxel_m);
+        Some((node(at_m)?, at_m))
+    });
+    // The void behind a thin wall is not before its inner side.
+    if let Some((node, _)) = straight.filter(|(_, at_m)| model.rays.clear(lifted_m, *at_m)) {
+        return Some(node);
+    }
+    let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
+    let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
+    for step in 0..27 {
+        let centre_m = lattice.centre_m(VoxelIndex(home + IVec3::new(step % 3, step / 3 % 3, step / 9) - 1));
+        if let Some(node) = node(centre_m).filter(|_| (centre_m - point_m).dot(normal) > 0.0) {
+            beside.push((centre_m.distance_squared(point_m), node, centre_m));
+        }
+    }
+    beside.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let seen = beside.iter().take(MOST_LOOKS).find(|(.., centre_m)| model.rays.clear(lifted_m, *centre_m));
+    seen.map(|&(_, node, _)| node)
 }
 
-/// The node of the void that a ray left before it came to a point.
-fn back_along(model: &Model, point_m: Vec3, direction: Vec3) -> Option<u32> {
+/// The node of the void that a ray of that length left before it came to a point.
+fn back_along(model: &Model, point_m: Vec3, direction: Vec3, length_m: f32) -> Option<u32> {
     let lattice = &model.voxels.lattice;
-    let step_m = -0.5 * lattice.voxel_m * direction;
-    (1..=STEPS_BACK).find_map(|step| model.skeleton.nearest.node(lattice.voxel_at(point_m + step as f32 * step_m)))
+    let step_m = 0.5 * lattice.voxel_m;
+    let steps = (1..=STEPS_BACK).map(|step| step as f32 * step_m).take_while(|back_m| *back_m < length_m);
+    steps
+        .map(|back_m| point_m - back_m * direction)
+        .find_map(|at_m| model.skeleton.nearest.node(lattice.voxel_at(at_m)))
 }
 
 /// The number of a zone's side.

@@ -58,11 +58,11 @@ pub fn walk(grounds: &Grounds, mut from_m: Vec3, direction: Vec3) -> Option<Walk
         if let Surface::Light(_) = hit.surface {
             return Some(Walk { end: End::Black, at, panes, length_m });
         }
-        let patch = grounds.patch_at(&at, direction)?;
+        let patch = grounds.patch_at(&at, direction, hit.distance_m)?;
         if at.answer.passes <= 0.0 || panes.len() == MOST_PANES {
             return Some(Walk { end: End::Patch(patch), at, panes, length_m });
         }
-        let behind = grounds.patch_at(&Start { normal: -at.normal, ..at }, -direction)?;
+        let behind = grounds.patch_at(&Start { normal: -at.normal, ..at }, -direction, 0.0)?;
         panes.push(Pane { sides: [patch, behind], at });
         from_m = position_m - at.normal * rays.epsilon_m();
     }
