@@ -43,8 +43,15 @@ def lights(scene):
         }
 
 
-def ask(scene, options):
-    """Runs the oracle in a folder of its own and gives its rows by sensor id."""
+def kept(target):
+    """The table that is there: its remarks, and its rows by sensor id."""
+    lines = target.read_text().splitlines() if target.exists() else []
+    rows = {line.split(",")[0]: line for line in lines if line and not line.startswith(("#", "id,"))}
+    return [line for line in lines if line.startswith("#")], rows
+
+
+def ask(scene, sensors, options):
+    """Runs the oracle in a folder of its own for these sensors and gives its rows by sensor id."""
     with tempfile.TemporaryDirectory() as folder:
         obj, setup, out = (Path(folder) / name for name in ("scene.obj", "setup.json", "out.csv"))
         with obj.open("w") as file:
@@ -57,7 +64,7 @@ def ask(scene, options):
             "reflectance": {material or "none": value for material, value in scene.reflectance.items()},
             "lights": list(lights(scene)),
             "sensors": [
-                {"name": name, "position": p} | ({"normal": n} if n else {}) for name, p, n in scene.sensors()
+                {"name": name, "position": p} | ({"normal": n} if n else {}) for name, p, n in sensors
             ],
         }))
         command = [sys.executable, options.oracle, obj, setup, out]
@@ -80,16 +87,22 @@ def main():
     parser.add_argument("--rr-depth", type=int, default=24)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--max-seconds", type=float, default=600.0, help="for the scalar and the planar sensors each")
+    parser.add_argument("--add", action="store_true", help="keep the table's rows, ask for the sensors it lacks alone")
     options = parser.parse_args()
     for path in options.scene:
         scene = SceneFile(path)
-        rows = ask(scene, options)
-        order = [name for name, _, _ in scene.sensors()]
-        planar = {name for name, _, normal in scene.sensors() if normal}
+        target = scene.path.parent / scene.table["sensors"]["reference"]
+        remarks, old = kept(target) if options.add else ([], {})
+        sensors = [sensor for sensor in scene.sensors() if sensor[0] not in old]
+        if not sensors:
+            print(f"{path}: no sensor lacks a reference")
+            continue
+        rows = ask(scene, sensors, options)
+        order = [name for name, _, _ in sensors]
+        planar = {name for name, _, normal in sensors if normal}
         rare = [name for name in order if float(rows[name]["top_share"]) > TRUSTED_SHARE]
         relative = {name: float(rows[name]["se"]) / max(float(rows[name]["E"]), 1e-300) for name in order}
-        lines = [
-            f"# {scene.table.get('name', scene.path.stem)}: irradiance and standard error in W/m2; f = net flux vector in W/m2, 0,0,0 = not known",
+        made = [
             "# values of an independent program, not of Lightvein: Mitsuba "
             f"{version('mitsuba')}, {options.variant}, integrator path, through mitsuba_irradiance.py",
             f"# {min(int(rows[n]['spp']) for n in order)} to {max(int(rows[n]['spp']) for n in order)} samples a sensor"
@@ -98,16 +111,19 @@ def main():
             f"# made {datetime.date.today()} by scenes/reference.py {scene.path.name}",
         ]
         if any(scene.emission.get(material) for material, _ in scene.faces):
-            lines.append("# emissive faces of the mesh shine to one side and reflect nothing, whatever their Kd")
+            made.append("# emissive faces of the mesh shine to one side and reflect nothing, whatever their Kd")
         if rare:
-            lines.append(f"# one sample over {TRUSTED_SHARE:.0%} of the sum, standard error not to be trusted: {' '.join(rare)}")
-        lines.append("id,irradiance,stderr,fx,fy,fz")
+            made.append(f"# one sample over {TRUSTED_SHARE:.0%} of the sum, standard error not to be trusted: {' '.join(rare)}")
+        title = f"# {scene.table.get('name', scene.path.stem)}: irradiance and standard error in W/m2; f = net flux vector in W/m2, 0,0,0 = not known"
+        added = [f"# added: {' '.join(order)}"] if old else []
+        lines = [*(remarks or [title]), *added, *made, "id,irradiance,stderr,fx,fy,fz"]
+        new = {}
         for name in order:
             row = rows[name]
             flux = [0.0, 0.0, 0.0] if name in planar else [float(row[k]) for k in ("fx", "fy", "fz")]
-            lines.append(",".join([name] + ["%.6g" % v for v in [float(row["E"]), float(row["se"]), *flux]]))
+            new[name] = ",".join([name] + ["%.6g" % v for v in [float(row["E"]), float(row["se"]), *flux]])
+        lines += [(old | new)[name] for name, _, _ in scene.sensors()]
         # Beside, then renamed: an interrupted run leaves the old table.
-        target = scene.path.parent / scene.table["sensors"]["reference"]
         beside = target.with_suffix(".part")
         beside.write_text("\n".join(lines) + "\n")
         os.replace(beside, target)

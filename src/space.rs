@@ -38,6 +38,18 @@ impl Lattice {
         Self { origin_m: min_m - 1.5 * voxel_m, voxel_m, size: size.to_array().map(|cells| (cells as usize).max(1)) }
     }
 
+    /// The same grid moved by so many voxels along each axis (0 or more), with a layer more on every axis along which it
+    /// moves: what lay within it still does.
+    pub fn shifted(&self, by_voxels: Vec3) -> Self {
+        let by_voxels = by_voxels.max(Vec3::ZERO);
+        let more = by_voxels.ceil().to_array().map(|layers| layers as usize);
+        Self {
+            origin_m: self.origin_m - by_voxels * self.voxel_m,
+            size: std::array::from_fn(|axis| self.size[axis] + more[axis]),
+            ..*self
+        }
+    }
+
     /// The voxel that holds `point_m`; outside the grid where the point is.
     pub fn voxel_at(&self, point_m: Vec3) -> VoxelIndex {
         VoxelIndex(self.point_in_grid(point_m).floor().as_ivec3())
@@ -89,6 +101,21 @@ mod tests {
         assert!(lattice.contains(VoxelIndex::new(18, 6, 4)));
         assert!(!lattice.contains(VoxelIndex::new(19, 6, 4)));
         assert!(!lattice.contains(VoxelIndex::new(-1, 0, 0)));
+    }
+
+    #[test]
+    fn a_shifted_lattice_keeps_the_box_inside() {
+        let lattice = Lattice::around(Vec3::ZERO, Vec3::new(2.0, 1.0, 0.7), 0.25);
+        for by_voxels in [Vec3::ZERO, Vec3::new(0.3, 0.9, 0.0), Vec3::ONE] {
+            let shifted = lattice.shifted(by_voxels);
+            for point_m in [Vec3::ZERO, Vec3::new(2.0, 1.0, 0.7)] {
+                let moved = shifted.point_in_grid(point_m) - lattice.point_in_grid(point_m);
+                assert!(moved.distance(by_voxels) < 1e-5, "{moved}");
+                let VoxelIndex(at) = shifted.voxel_at(point_m);
+                let last = IVec3::from_array(shifted.size.map(|cells| cells as i32 - 1));
+                assert!(at.cmpgt(IVec3::ZERO).all() && at.cmplt(last).all(), "a voxel to spare: {at}");
+            }
+        }
     }
 
     #[test]

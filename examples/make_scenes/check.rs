@@ -34,6 +34,33 @@ pub fn check(scene: &Scene) -> Result<(), String> {
     Ok(())
 }
 
+/// Scalar sensors two voxels or more from any wall, so that they measure the room and not a voxel.
+pub fn check_clear(scene: &Scene) -> Result<(), String> {
+    let clearance_m = 2.0 * scene.voxel_m;
+    for sensor in scene.tables.iter().flat_map(|t| &t.sensors).filter(|s| s.normal.is_none()) {
+        let distance_m = scene.mesh.triangle_corners().map(|t| distance(t, sensor.position)).fold(f64::MAX, f64::min);
+        if distance_m < clearance_m {
+            let (name, id) = (scene.name, &sensor.id);
+            return Err(format!("{name}: sensor {id} is {distance_m:.3} m from a wall, under {clearance_m} m"));
+        }
+    }
+    Ok(())
+}
+
+/// From a point to a triangle: to its plane where the foot lies inside, else to its nearest edge.
+fn distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let doubled = (b - a).cross(c - a);
+    let edges = [(a, b), (b, c), (c, a)];
+    if edges.iter().all(|(q, r)| (r - q).cross(p - q).dot(doubled) >= 0.0) {
+        return (p - a).dot(doubled.normalize()).abs();
+    }
+    let to_edge = |(q, r): &(DVec3, DVec3)| {
+        let t = ((p - q).dot(r - q) / (r - q).length_squared()).clamp(0.0, 1.0);
+        p.distance(q.lerp(*r, t))
+    };
+    edges.iter().map(to_edge).fold(f64::MAX, f64::min)
+}
+
 /// Every edge must be walked once in each direction.
 fn check_closed(mesh: &Mesh) -> Result<(), String> {
     let mut walks = BTreeMap::new();
@@ -56,13 +83,11 @@ fn check_closed(mesh: &Mesh) -> Result<(), String> {
 /// Strackee 1983). Normals that point the wrong way fail here too.
 fn is_inside(mesh: &Mesh, p: DVec3) -> bool {
     let mut half_angle = 0.0;
-    for polygon in mesh.polygons() {
-        for i in 1..polygon.len() - 1 {
-            let [a, b, c] = [polygon[0], polygon[i], polygon[i + 1]].map(|v| mesh.vertices[v] - p);
-            let (la, lb, lc) = (a.length(), b.length(), c.length());
-            let volume = a.dot(b.cross(c));
-            half_angle += volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-        }
+    for corners in mesh.triangle_corners() {
+        let [a, b, c] = corners.map(|corner| corner - p);
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        let volume = a.dot(b.cross(c));
+        half_angle += volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
     }
     // Normals into the void make the winding negative.
     let winding = half_angle / (2.0 * std::f64::consts::PI);

@@ -14,14 +14,18 @@
 //! | corridor | bends and a dead end |
 //! | cave | curved, noisy walls |
 //! | tower | storeys, shafts, loops, a floating block, every kind of light |
+//! | held_out/ | the test set, on which nothing was tuned: slanted and curved walls, other proportions and reflectances |
 
 mod boxes;
 mod cave;
 mod check;
 mod gallery;
+mod held_out;
 mod isosurface;
+mod prisms;
 mod rooms;
 mod scene;
+mod seen;
 mod tower;
 
 use std::error::Error;
@@ -35,6 +39,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         check::check(scene)?;
         scene.write(&root)?;
         println!("{}", scene.summary());
+    }
+    for scene in &held_out::scenes()? {
+        check::check(scene)?;
+        check::check_clear(scene)?;
+        scene.write(&root.join(held_out::FOLDER))?;
+        println!("{}/{}", held_out::FOLDER, scene.summary());
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// The command that made a file, told in its first line.
 const MADE_BY: &str = "# made by: cargo run --release --example make_scenes -- scenes\n";
@@ -83,6 +83,11 @@ fn tidy(p: [f64; 3]) -> DVec3 {
     (DVec3::from(p) * 1e4).round() / 1e4
 }
 
+/// A sensor on a slanted wall, placed to a micrometre; a tenth of a millimetre would be as much off its wall.
+pub fn on_slant(id: String, position: DVec3, normal: DVec3) -> Sensor {
+    Sensor { id, position: (position * 1e6).round() / 1e6, normal: Some((normal * 1e9).round() / 1e9) }
+}
+
 /// A sensor of scalar irradiance.
 pub fn scalar(id: impl Into<String>, position: [f64; 3]) -> Sensor {
     Sensor { id: id.into(), position: tidy(position), normal: None }
@@ -102,6 +107,11 @@ impl Mesh {
     /// Every polygon of every material.
     pub fn polygons(&self) -> impl Iterator<Item = &Vec<usize>> {
         self.groups.iter().flat_map(|(_, polygons)| polygons)
+    }
+
+    /// Corners of the triangles that the polygons make when fanned.
+    pub fn triangle_corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.polygons().flat_map(|p| (1..p.len() - 1).map(|i| [p[0], p[i], p[i + 1]].map(|v| self.vertices[v])))
     }
 
     fn obj(&self, scene: &Scene) -> String {
@@ -152,6 +162,32 @@ impl Table {
 }
 
 impl Scene {
+    /// The scene turned about the z axis: mesh, lights and sensors.
+    pub fn turned(mut self, degrees: f64) -> Self {
+        let turn = DQuat::from_rotation_z(degrees.to_radians());
+        // Vertices and lights in whole tenths of a millimetre again.
+        let place = |p: DVec3| tidy((turn * p).to_array());
+        self.mesh.vertices = self.mesh.vertices.into_iter().map(place).collect();
+        self.lights = self
+            .lights
+            .into_iter()
+            .map(|light| match light {
+                Light::Point { position, flux_w } => Light::Point { position: place(position), flux_w },
+                Light::Sphere { center, radius, flux_w } => Light::Sphere { center: place(center), radius, flux_w },
+                Light::Quad { corner, u, v, flux_w } => {
+                    Light::Quad { corner: place(corner), u: place(u), v: place(v), flux_w }
+                }
+            })
+            .collect();
+        for sensor in self.tables.iter_mut().flat_map(|table| &mut table.sensors) {
+            *sensor = match sensor.normal {
+                Some(normal) => on_slant(sensor.id.clone(), turn * sensor.position, turn * normal),
+                None => scalar(sensor.id.clone(), (turn * sensor.position).to_array()),
+            };
+        }
+        self
+    }
+
     /// Writes the folder `root/<name>`; references that lie there stay.
     pub fn write(&self, root: &Path) -> io::Result<()> {
         let folder = root.join(self.name);

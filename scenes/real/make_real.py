@@ -75,7 +75,7 @@ values are the map's own: this file and its sensors, like the map, are under GPL
         blocks=[point_light(p, value * WATTS_PER_QUAKE_LIGHT) for p, value in lights],
         voxel_m=voxel_m,
         starts=[p for p, _ in lights],
-        count=12,
+        count=20,
         clearance_m=0.5,
     )
 
@@ -137,7 +137,7 @@ Data: Radiance Software License 2.0, LBNL.""",
         blocks=blocks,
         voxel_m=0.05,
         starts=starts,
-        count=12,
+        count=20,
         clearance_m=0.2,
         within=((0.1, 0.1, 0.1), (8.1, 5.4, 2.9)),
     )

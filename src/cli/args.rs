@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use crate::scene::Method;
+use crate::study::stress::Failure;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -58,6 +59,48 @@ pub enum Command {
         #[arg(long)]
         bounces: Option<u32>,
     },
+    /// Stability where methods fail: scenes disturbed, and built-in scenes made for one failure each
+    Stress(StressArgs),
+}
+
+/// What `stress` takes.
+#[derive(Debug, clap::Args)]
+pub struct StressArgs {
+    /// Scene files or meshes to disturb; without one the built-in scenes alone
+    pub scenes: Vec<PathBuf>,
+    /// The methods; by default every estimator
+    #[arg(long, value_delimiter = ',', value_parser = method())]
+    pub methods: Vec<Method>,
+    /// The failures to try; by default all
+    #[arg(long, value_delimiter = ',', value_parser = failure(), default_values_t = Failure::ALL, hide_default_value = true)]
+    pub rows: Vec<Failure>,
+    /// Offsets of the lattice
+    #[arg(long, default_value_t = 16)]
+    pub offsets: u32,
+    /// Turns of the scene
+    #[arg(long, default_value_t = 8)]
+    pub turns: u32,
+    /// Seeds beside the first
+    #[arg(long, default_value_t = 8)]
+    pub seeds: u32,
+    /// Samples a sensor of a traced truth; small openings take up to 256 times as many
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub spp: u32,
+    /// Edge of a voxel in metres; by default each scene's own, and 0.1 for the built-in ones
+    #[arg(long, value_name = "METRES", value_parser = edge_m)]
+    pub voxel: Option<f32>,
+    /// Threads to work on; by default one a core. The figures do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Seed of all random numbers
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// One JSON object on stdout instead of tables
+    #[arg(long)]
+    pub json: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 /// What every command takes.
@@ -130,6 +173,12 @@ fn factor(text: &str) -> Result<f64, String> {
 fn method() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::from_name(&name).ok_or("not a method"))
+}
+
+/// A failure by its name.
+fn failure() -> impl TypedValueParser<Value = Failure> {
+    PossibleValuesParser::new(Failure::ALL.map(Failure::name))
+        .try_map(|name| Failure::from_name(&name).ok_or("not a failure"))
 }
 
 #[cfg(test)]

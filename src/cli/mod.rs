@@ -10,6 +10,7 @@ mod plan;
 mod report;
 mod run;
 mod stages;
+mod stress;
 mod table;
 mod tolerance;
 mod write;

@@ -5,6 +5,7 @@ use super::chart;
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::stages::{Stages, available_bytes};
+use super::stress;
 use super::write::{self, Analysed, Folder};
 use super::{tell, tolerance};
 use crate::export;
@@ -33,6 +34,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
         Command::Compare { common, methods, spp } => run_compare(&common, &methods, spp, cancel),
         Command::Chart { many, budget, peer } => chart::run(&many, budget, &peer, cancel),
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
+        Command::Stress(args) => stress::run(&args, cancel),
     }
 }
 
@@ -196,7 +198,10 @@ pub fn most_bytes() -> u64 {
 }
 
 /// Voxels and skeleton, at the size asked for or one that is chosen; a bare mesh gets its light. Gives all warnings so far.
-fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> Result<(Model, Vec<String>)> {
+///
+/// # Errors
+/// A grid that does not fit, or an interrupt.
+pub fn prepare(scene: &mut Scene, plan: &Plan, stages: &Stages, cancel: &Cancel) -> Result<(Model, Vec<String>)> {
     let max_bytes = most_bytes();
     stages.begin("rays", 0);
     let rays = Arc::new(Rays::new(scene));
@@ -274,6 +279,9 @@ pub fn warn(warnings: &[String]) {
 }
 
 /// Text on stdout.
+///
+/// # Errors
+/// What the writer says.
 pub fn say(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())?;

@@ -10,6 +10,8 @@ pub mod plan;
 pub mod ply;
 pub mod reference;
 pub mod skeleton_json;
+pub mod stress;
+pub mod strips;
 pub mod swc;
 pub mod voxels;
 

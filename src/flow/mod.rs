@@ -147,6 +147,13 @@ pub fn add_lights(
     if refused > 0 {
         warnings.push(format!("{refused} arrivals were negative or not finite and count as nothing"));
     }
+    let faces_away = |(reading, probe): &(&Reading, &Probe)| reading.status == Status::Dark && probe.normal.is_some();
+    let facing_away = readings.iter().zip(probes).filter(faces_away).count();
+    if facing_away > 0 && model.walls.answers.iter().any(|answer| answer.reflects > 0.0) {
+        warnings.push(format!(
+            "{facing_away} sensor(s) face away from the one direction a light comes from here: their zero knows of no reflection"
+        ));
+    }
     Ok(Field { readings, warnings, shares: None })
 }
 

@@ -104,6 +104,7 @@ fn every_sensor_has_its_status() {
     for field in [field(&modelled, own), field(&modelled, backward::estimate)] {
         let statuses: Vec<Status> = field.readings.iter().map(|reading| reading.status).collect();
         assert_eq!(statuses, want);
+        assert!(field.warnings[0].starts_with("1 sensor(s) face away"), "{:?}", field.warnings);
         for reading in &field.readings[1..] {
             assert_eq!((reading.value_w_m2, reading.flux_w_m2), (0.0, DVec3::ZERO));
         }

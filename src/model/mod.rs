@@ -13,9 +13,9 @@ use crate::light::{Aim, Emitter, Sampler, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Scene, Sensor};
 use crate::skeleton::Skeleton;
-use crate::space::VoxelIndex;
+use crate::space::{Lattice, VoxelIndex};
 use crate::voxel::seeds::{self, Ground, Lost, Place};
-use crate::voxel::{VoxelError, Voxels, voxelise};
+use crate::voxel::{VoxelError, Voxels, voxelise, voxelise_on};
 use glam::Vec3;
 use petgraph::graph::NodeIndex;
 use rayon::prelude::*;
@@ -79,6 +79,13 @@ pub enum ModelError {
     Cancelled(#[from] Cancelled),
 }
 
+impl ModelError {
+    /// Whether the run was stopped, rather than the scene refused.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Cancelled(_) | Self::Voxel(VoxelError::Cancelled(_)))
+    }
+}
+
 impl Model {
     /// Models a scene with voxels of `voxel_m` metres, taking at most `max_bytes` for voxels and skeleton.
     ///
@@ -92,11 +99,38 @@ impl Model {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<Self, ModelError> {
+        Self::voxelised(scene, rays, progress, cancel, |rays, patches| {
+            voxelise(scene, rays, patches, voxel_m, max_bytes, progress, cancel)
+        })
+    }
+
+    /// The same on a lattice of one's own, as [`voxelise_on`].
+    ///
+    /// # Errors
+    /// [`ModelError::Cancelled`].
+    pub fn build_on(
+        lattice: Lattice,
+        scene: &Scene,
+        rays: Arc<Rays>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, ModelError> {
+        Self::voxelised(scene, rays, progress, cancel, |rays, patches| {
+            voxelise_on(lattice, scene, rays, patches, progress, cancel)
+        })
+    }
+
+    fn voxelised(
+        scene: &Scene,
+        rays: Arc<Rays>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+        voxelise: impl FnOnce(&Rays, &[Place]) -> Result<Voxels, VoxelError>,
+    ) -> Result<Self, ModelError> {
         let sources = Sources::of(scene);
 
         progress.begin("voxels", 0);
-        let patches = places_of_patches(scene, &sources);
-        let voxels = voxelise(scene, &rays, &patches, voxel_m, max_bytes, progress, cancel)?;
+        let voxels = voxelise(&rays, &places_of_patches(scene, &sources))?;
         progress.end();
 
         progress.begin("skeleton", 0);

@@ -1,12 +1,12 @@
 //! Which openings does the grid close?
 //!
 //! An opening of no more than two voxels can be solid all across, since its edges touch every voxel in it. Along each axis,
-//! wherever up to nine solid voxels part two free ones (one of them void) and their faces do not plainly fill the section, an
-//! exact ray is cast between the two centres. When it is clear, and the two are not joined around the corner within a few voxels, an opening has closed there. Crossings
-//! that touch make one opening.
+//! wherever up to nine solid voxels part two free ones (one of them void) and their faces do not plainly fill the section, up
+//! to five exact rays are cast between the two. When one is clear, and the two are not joined around the corner within a
+//! few voxels, an opening has closed there. Crossings that touch make one opening.
 //!
-//! Limits: an opening at least a voxel wide and more or less across an axis is always found, a narrower one where a ray
-//! happens to pass. Faces that lie double hide an opening that they seem to fill.
+//! Limits: an opening at least half a voxel wide and more or less across an axis is always found, a narrower one where a
+//! ray happens to pass. Faces that lie double hide an opening that they seem to fill.
 
 use super::bits::BitGrid;
 use super::brick;
@@ -129,7 +129,7 @@ fn crossings(
     void: &BitGrid,
     cancel: &Cancel,
 ) -> Result<Vec<Crossing>, Cancelled> {
-    let Ground { lattice, solid, rays } = *ground;
+    let solid = ground.solid;
     let [across, rows, planes] = solid.bricks();
     let slabs = (0..planes).into_par_iter().map(|slab| {
         cancel.check()?;
@@ -142,7 +142,7 @@ fn crossings(
                     let crossing = crossing_from(low, axis, solid, void);
                     found.extend(crossing.filter(|crossing| {
                         !is_walled(crossing, ground, surface)
-                            && rays.clear(lattice.centre_m(crossing.low), lattice.centre_m(crossing.high()))
+                            && is_seen_through(crossing, ground)
                             && !joined_around(crossing, solid)
                     }));
                 }
@@ -174,6 +174,21 @@ fn is_walled(crossing: &Crossing, ground: &Ground, surface: &SurfaceVoxels) -> b
         }
     }
     together_m2.abs() >= filled_m2
+}
+
+/// Whether an exact ray is clear between the two free voxels of a crossing: along its middle, or along the middles of the
+/// quarters of its section, so that no hole of half a voxel is missed.
+fn is_seen_through(crossing: &Crossing, ground: &Ground) -> bool {
+    let [low_m, high_m] = [crossing.low, crossing.high()].map(|end| ground.lattice.centre_m(end));
+    let quarter_m = 0.25 * ground.lattice.voxel_m;
+    let aside = |u: f32, v: f32| {
+        let mut aside_m = Vec3::ZERO;
+        aside_m[(crossing.axis + 1) % 3] = u * quarter_m;
+        aside_m[(crossing.axis + 2) % 3] = v * quarter_m;
+        aside_m
+    };
+    let places = [(0.0, 0.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+    places.into_iter().map(|(u, v)| aside(u, v)).any(|aside_m| ground.rays.clear(low_m + aside_m, high_m + aside_m))
 }
 
 /// Whether free voxels near a crossing join its two ends.
@@ -220,9 +235,11 @@ mod tests {
 
     #[test]
     fn a_slot_that_closes_is_found() {
-        for (thick_m, door_m) in [(0.0, 0.0), (0.1, 0.0), (0.3, 0.0), (0.1, 0.6)] {
-            let found = openings(&rooms_with_a_slot(thick_m, 0.15, door_m), 0.1);
-            assert_eq!(found.len(), 1, "{thick_m} {door_m} {found:?}");
+        for (thick_m, slot_m, door_m) in
+            [(0.0, 0.15, 0.0), (0.1, 0.15, 0.0), (0.3, 0.15, 0.0), (0.1, 0.15, 0.6), (0.1, 0.055, 0.0), (0.3, 0.055, 0.0)]
+        {
+            let found = openings(&rooms_with_a_slot(thick_m, slot_m, door_m), 0.1);
+            assert_eq!(found.len(), 1, "{thick_m} {slot_m} {door_m} {found:?}");
             let off_m = (found[0].position_m - Vec3::new(2.0, 1.05, 1.0)).abs();
             assert!(off_m.x < 0.06 && off_m.y < 0.06 && off_m.z < 0.2, "{found:?}");
             assert!(found[0].crossings >= 15);

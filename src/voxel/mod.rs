@@ -121,7 +121,22 @@ pub fn voxelise(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Voxels, VoxelError> {
-    let lattice = fitting_lattice(scene, voxel_m, most_bytes)?;
+    voxelise_on(fitting_lattice(scene, voxel_m, most_bytes)?, scene, rays, patches, progress, cancel)
+}
+
+/// The same on a lattice of one's own: [`Lattice::around`] the mesh, or that [shifted](Lattice::shifted). Memory is not
+/// bounded.
+///
+/// # Errors
+/// [`VoxelError::Cancelled`] when `cancel` was raised.
+pub fn voxelise_on(
+    lattice: Lattice,
+    scene: &Scene,
+    rays: &Rays,
+    patches: &[Place],
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Voxels, VoxelError> {
     let (solid, surface) = surface::voxelised(scene, &lattice, progress, cancel)?;
 
     progress.begin("flood", 0);
@@ -136,7 +151,7 @@ pub fn voxelise(
     progress.end();
 
     let mut warnings = parts::warnings(&voids, &seeds);
-    warnings.extend(closed::warning(&closed, scene, voxel_m));
+    warnings.extend(closed::warning(&closed, scene, lattice.voxel_m));
     Ok(Voxels { lattice, solid, void, surface, voids, seeds, closed, warnings })
 }
 

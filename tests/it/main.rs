@@ -31,3 +31,6 @@ mod threads;
 
 /// Long steps stop when asked to.
 mod cancel;
+
+/// One set of laws of physics, for every estimator.
+mod conformance;

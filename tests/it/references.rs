@@ -12,6 +12,10 @@ use std::path::{Path, PathBuf};
 const SAMPLES: usize = 600_000;
 const MOST_SAMPLES: usize = 16_384;
 
+/// The same for the test set, whose sensors are darker, so that few samples of theirs are more skewed.
+const SAMPLES_IN_TEST_SET: usize = 800_000;
+const MOST_SAMPLES_IN_TEST_SET: usize = 32_768;
+
 /// Most samples for each sensor of a real scene, whose sensors are less dark and whose rays cost more.
 const MOST_SAMPLES_IN_REAL_SCENES: usize = 4096;
 
@@ -24,9 +28,9 @@ const LARGEST_TRUSTED_SHARE: f64 = 0.05;
 /// Above this share of the reading, samples are so few and so skewed that deviations are not normal either.
 const LARGEST_TRUSTED_ERROR: f64 = 0.1;
 
-/// The scene files in the folders under `scenes` that `wanted` holds for, sorted.
-fn scene_files(wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes");
+/// The scene files in the folders under `root` that `wanted` holds for, sorted.
+fn scene_files(root: &str, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(root);
     let folders = std::fs::read_dir(root).expect("the folder of scenes").map(|entry| entry.expect("an entry").path());
     let folders = folders.filter(|folder| folder.is_dir() && wanted(folder));
     let files = folders.flat_map(|folder| std::fs::read_dir(folder).expect("a scene's folder"));
@@ -74,7 +78,7 @@ fn deviations(scene: &Scene, traced: &Traced, samples: u32) -> (Vec<f64>, usize)
 /// Traces the scenes and holds them to their references: at least `least` sensors within 3 standard errors, as far as chance
 /// allows. Of independent normal deviations 0.27% lie beyond 3, so 1% (and at least one sensor) may, none beyond 4.5 (1
 /// in 150,000); and together they show no bias and no wrong error estimate.
-fn check(files: &[PathBuf], most_samples: usize, least: usize) {
+fn check(files: &[PathBuf], samples: usize, most_samples: usize, least: usize) {
     let (progress, cancel) = (Quiet, Cancel::new());
     let (mut all, mut untrusted) = (Vec::new(), 0);
     for file in files {
@@ -84,7 +88,7 @@ fn check(files: &[PathBuf], most_samples: usize, least: usize) {
             continue;
         }
         let (rays, sources) = (Rays::new(&scene), Sources::of(&scene));
-        let samples = (SAMPLES / scene.sensors.len()).min(most_samples) as u32;
+        let samples = (samples / scene.sensors.len()).min(most_samples) as u32;
         let settings = Settings { samples, seed: 1, ..Settings::default() };
         let traced = trace(&scene, &rays, &sources, &settings, &progress, &cancel).expect("nobody cancels");
         let (deviations, leaning) = deviations(&scene, &traced, samples);
@@ -106,7 +110,12 @@ fn check(files: &[PathBuf], most_samples: usize, least: usize) {
 
 #[test]
 fn the_path_tracer_agrees_with_mitsuba() {
-    check(&scene_files(|folder| !folder.ends_with("real")), MOST_SAMPLES, 400);
+    check(&scene_files("scenes", |folder| !folder.ends_with("real")), SAMPLES, MOST_SAMPLES, 400);
+}
+
+#[test]
+fn the_path_tracer_agrees_with_mitsuba_on_the_test_set() {
+    check(&scene_files("scenes/held_out", |_| true), SAMPLES_IN_TEST_SET, MOST_SAMPLES_IN_TEST_SET, 80);
 }
 
 #[test]
@@ -116,5 +125,5 @@ fn the_path_tracer_agrees_with_mitsuba_on_real_scenes() {
         println!("skipped: ../shared/data is absent");
         return;
     }
-    check(&scene_files(|folder| folder.ends_with("real")), MOST_SAMPLES_IN_REAL_SCENES, 50);
+    check(&scene_files("scenes", |folder| folder.ends_with("real")), SAMPLES, MOST_SAMPLES_IN_REAL_SCENES, 80);
 }

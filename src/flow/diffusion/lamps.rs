@@ -8,7 +8,7 @@
 
 use crate::flow::direct::Direct;
 use crate::model::{Model, Probe};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::f64::consts::PI;
 
 /// Lamps a point looks at: 256 draws leave about 6%.
