@@ -235,9 +235,14 @@ mod tests {
 
     #[test]
     fn a_slot_that_closes_is_found() {
-        for (thick_m, slot_m, door_m) in
-            [(0.0, 0.15, 0.0), (0.1, 0.15, 0.0), (0.3, 0.15, 0.0), (0.1, 0.15, 0.6), (0.1, 0.055, 0.0), (0.3, 0.055, 0.0)]
-        {
+        for (thick_m, slot_m, door_m) in [
+            (0.0, 0.15, 0.0),
+            (0.1, 0.15, 0.0),
+            (0.3, 0.15, 0.0),
+            (0.1, 0.15, 0.6),
+            (0.1, 0.055, 0.0),
+            (0.3, 0.055, 0.0),
+        ] {
             let found = openings(&rooms_with_a_slot(thick_m, slot_m, door_m), 0.1);
             assert_eq!(found.len(), 1, "{thick_m} {slot_m} {door_m} {found:?}");
             let off_m = (found[0].position_m - Vec3::new(2.0, 1.05, 1.0)).abs();

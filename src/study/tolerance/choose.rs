@@ -249,7 +249,7 @@ mod tests {
                 rung("fine", 1.0, Some(0.02), 0.0),
             ]
         };
-        for (tolerance, want) in [(1.01, "fine"), (1.05, "fine"), (1.2, "fair"), (1.5, "fair"), (2.5, "rough")] {
+        for (tolerance, want) in [(1.01, "fine"), (1.05, "fine"), (1.3, "fair"), (1.5, "fair"), (4.0, "rough")] {
             let (method, _, expected, made) = chosen(&rungs(), tolerance, false);
             assert_eq!(method, format!("forward {want}"), "{tolerance}");
             assert_eq!(
@@ -268,7 +268,7 @@ mod tests {
         // 0.1 m: 2, 0.05 m: 1.5, 0.025 m: 1.25.
         let rungs = [rung("only", 1.0, Some(0.01), 10.0)];
         for (tolerance, want_m, made_wanted) in
-            [(1.4, 0.1, vec![]), (1.25, 0.05, vec![0.025]), (1.01, 0.025, vec![0.025, 0.0125])]
+            [(2.0, 0.1, vec![]), (1.5, 0.05, vec![0.025]), (1.01, 0.025, vec![0.025, 0.0125])]
         {
             let (_, voxel_m, expected, made) = chosen(&rungs, tolerance, true);
             assert_eq!((voxel_m, made), (want_m, made_wanted), "{tolerance}");
