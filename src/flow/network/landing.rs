@@ -58,8 +58,9 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, promised
     if shining.place.is_err() || shining.flux_w <= 0.0 {
         return landing;
     }
-    let lamps = grounds.model.shining.len() as u32;
-    let photons = (quality.photons / lamps.max(1)).max(LEAST_PHOTONS);
+    let lamps = grounds.model.shining.len();
+    let shine = grounds.model.shining.iter().filter(|shining| shining.flux_w > 0.0).count() as u32;
+    let photons = (quality.photons / shine.max(1)).max(LEAST_PHOTONS);
     let shadows = |number: usize| {
         let patch = &grounds.patches.list[number];
         let most = f64::from((patch.starts.len() as u32).min(quality.shadow_rays));
@@ -81,7 +82,7 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, promised
         .into_par_iter()
         .with_min_len(16)
         .map(|patch| {
-            let offset = sequence::offset(seed, SHADOW_OFFSETS + (patch * lamps as usize + shining.emitter) as u64);
+            let offset = sequence::offset(seed, SHADOW_OFFSETS + (patch * lamps + shining.emitter) as u64);
             let starts = &grounds.patches.starts[grounds.patches.list[patch].starts.clone()];
             let count = shadows(patch);
             let shadow = |ray: u32| {

@@ -1,7 +1,7 @@
 //! Which pieces of wall exchange light?
 //!
 //! A patch is what one zone sees in one direction: all walls in it whose normals have the same dominant axis and sign, panes
-//! apart from what is opaque. Areas, normals and reflectances are the mesh's own, by points spread evenly over it: a point
+//! and black walls apart. Areas, normals and reflectances are the mesh's own, by points spread evenly over it: a point
 //! stands for the same area everywhere. A side of a wall belongs to the void that begins in front of it.
 //!
 //! Limits: crevices that the voxels close have no zone; what is in them is taken to be where the void ends before them.
@@ -15,8 +15,8 @@ use crate::space::VoxelIndex;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
-/// Orientations of opaque walls, then of panes.
-const KINDS: usize = 12;
+/// Orientations of walls that reflect, then of panes, then of black ones.
+const KINDS: usize = 18;
 
 /// No patch.
 const NONE: u32 = u32::MAX;
@@ -144,13 +144,17 @@ impl Patches {
         }
     }
 
+    /// The patch of a zone that is like a wall of that normal and answer; another of the zone's where it has none.
+    pub fn like(&self, zone: u32, normal: Vec3, answer: Answer) -> Option<u32> {
+        self.of_kind.get(kind(zone, normal, answer) as usize).copied().filter(|&patch| patch != NONE)
+    }
+
     /// The patch of a point on a wall, its normal on the side that was hit, by a ray of that length that came
     /// along `direction`. `None` where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
         let node = before_wall(model, hit.position_m, hit.normal)
             .or_else(|| back_along(model, hit.position_m, direction, length_m))?;
-        let kind = kind(zones.at(node, hit.position_m), hit.normal, hit.answer);
-        self.of_kind.get(kind as usize).copied().filter(|&patch| patch != NONE)
+        self.like(zones.at(node, hit.position_m), hit.normal, hit.answer)
     }
 }
 
@@ -213,5 +217,10 @@ fn back_along(model: &Model, point_m: Vec3, direction: Vec3, length_m: f32) -> O
 fn kind(zone: u32, normal: Vec3, answer: Answer) -> u32 {
     let axis = normal.abs().max_position();
     let side = 2 * axis + usize::from(normal[axis] < 0.0);
-    KINDS as u32 * zone + (side + if answer.passes > 0.0 { 6 } else { 0 }) as u32
+    let matter = match answer {
+        Answer { passes, .. } if passes > 0.0 => 6,
+        Answer { reflects, .. } if reflects > 0.0 => 0,
+        _ => 12,
+    };
+    KINDS as u32 * zone + (side + matter) as u32
 }
