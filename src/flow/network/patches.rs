@@ -34,11 +34,18 @@ const MOST_LOOKS: usize = 4;
 /// Back along a ray the void is looked for in steps of half a voxel, this many.
 const STEPS_BACK: u32 = 24;
 
-/// A zone is seen to have about this many patches; decides only how many points are tried.
-const PATCHES_A_ZONE: f32 = 2.5;
+/// Points that are tried first, for each zone.
+const FIRST_POINTS_A_ZONE: u32 = 8;
+
+/// Fewest and most of them.
+const LEAST_POINTS: u32 = 1024;
+const MOST_FIRST_POINTS: u32 = 32_768;
+
+/// Points for each line, so that areas come out better than by the lines alone.
+const POINTS_A_LINE: f64 = 1.5;
 
 /// Most points that are tried on the mesh.
-const MOST_POINTS: f64 = 4e6;
+const MOST_POINTS: f64 = 2e6;
 
 /// One side of walls in one zone.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,15 +87,18 @@ pub struct Patches {
 impl Patches {
     /// The patches of the zones of a model, with about [`Quality::lines`] starts each. Linear in the starts.
     pub fn new(model: &Model, zones: &Zones, quality: &Quality, seed: u64) -> Self {
-        let wanted = f64::from(PATCHES_A_ZONE * quality.lines as f32) * zones.count as f64;
-        let mut tried = wanted.clamp(1024.0, MOST_POINTS).ceil();
-        let mut found = points(model, zones, tried as u32, seed);
-        // Where most of the mesh faces no void of ours, as outside of a house, more points are tried.
-        if (found.len() as f64) < 0.5 * wanted && !found.is_empty() {
-            tried = (tried * wanted / found.len() as f64).min(MOST_POINTS).ceil();
-            found = points(model, zones, tried as u32, seed);
+        // A few points tell how many patches there are and how much of the mesh faces the void.
+        let mut tried = FIRST_POINTS_A_ZONE.saturating_mul(zones.count as u32).clamp(LEAST_POINTS, MOST_FIRST_POINTS);
+        let mut found = points(model, zones, tried, seed);
+        let mut kinds: Vec<u32> = found.iter().map(|(kind, _)| *kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let wanted = POINTS_A_LINE * f64::from(quality.lines) * kinds.len() as f64;
+        if (found.len() as f64) < wanted {
+            tried = (f64::from(tried) * wanted / found.len() as f64).min(MOST_POINTS).ceil() as u32;
+            found = points(model, zones, tried, seed);
         }
-        let point_m2 = model.walls.area_m2() / tried;
+        let point_m2 = model.walls.area_m2() / f64::from(tried);
 
         found.sort_by_key(|(kind, _)| *kind);
         let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
@@ -172,9 +182,9 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<u32> {
         let at_m = point_m + normal * (out * lattice.voxel_m);
         Some((node(at_m)?, at_m))
     });
-    // The void behind a thin wall is not before its inner side.
-    if let Some((node, _)) = straight.filter(|(_, at_m)| model.rays.clear(lifted_m, *at_m)) {
-        return Some(node);
+    if let Some((node, at_m)) = straight {
+        // The void behind a thin wall is not before its inner side.
+        return model.rays.clear(lifted_m, at_m).then_some(node);
     }
     let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
     let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
