@@ -184,7 +184,10 @@ fn open(
     cancel: &Cancel,
 ) -> Result<(Scene, Plan)> {
     stages.begin("load", 0);
-    let scene = Scene::load(&common.scene, stages, cancel)?;
+    // On threads of its own: those of the whole run may be named in the file, and can be set but once.
+    let loading = rayon::ThreadPoolBuilder::new().num_threads(common.threads.unwrap_or(0).into()).build()?;
+    let scene = loading.install(|| Scene::load(&common.scene, stages, cancel))?;
+    drop(loading);
     stages.end();
     let plan = Plan::new(common, method, settings, &scene.model);
     if let Some(threads) = plan.threads {

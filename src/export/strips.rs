@@ -1,11 +1,11 @@
-//! A picture of a stress test: for each failure and case a strip of dots a method, one dot an answer, along a logarithmic axis
-//! of factors. Left: how far answers move; right: how far they are from the truth. The scenes of a case lie in one strip.
+//! A picture of a stress test: for each failure and case a strip of dots a method, one dot an answer, along an axis of
+//! factors, logarithmic in what they have above 1. Left: how far answers move; right: how far they are from the truth. The scenes of a case lie in one strip.
 
 use crate::study::stress::{Failure, Row, Spread};
 use std::io::{self, Write};
 
 /// Widths of the text at the left, of each of the two panels, and between them, in SVG units.
-const TEXT: f64 = 250.0;
+const TEXT: f64 = 262.0;
 const PANEL: f64 = 400.0;
 const GAP: f64 = 40.0;
 
@@ -15,11 +15,14 @@ const ABOVE_CASE: f64 = 5.0;
 const ABOVE_FAILURE: f64 = 9.0;
 const HEAD: f64 = 54.0;
 
+/// The axis begins this far above 1; what is nearer to 1 stands there too.
+const LEAST_ABOVE: f64 = 0.01;
+
 /// The axis ends here; what is infinite stands beyond it.
 const MOST_FACTOR: f64 = 1000.0;
 
 /// Dots a strip: of more answers this many evenly from least to greatest are drawn.
-const MOST_DOTS: usize = 80;
+const MOST_DOTS: usize = 40;
 
 /// Colours of methods in their order: told apart by those who see no red or green (Okabe & Ito 2008).
 const COLOURS: [&str; 6] = ["#d55e00", "#e69f00", "#0072b2", "#009e73", "#cc79a7", "#555555"];
@@ -115,7 +118,7 @@ fn draw_head(out: &mut dyn Write, methods: &[&str], height: f64) -> io::Result<(
     for (panel, title) in titles.into_iter().enumerate() {
         let left = TEXT + panel as f64 * (PANEL + GAP);
         writeln!(out, r#"<text x="{left:.1}" y="16" font-weight="bold">{title}</text>"#)?;
-        for factor in [1.0, 1.1, 1.3, 2.0, 5.0, 10.0, 100.0, MOST_FACTOR, f64::INFINITY] {
+        for factor in [1.0, 1.03, 1.1, 1.3, 2.0, 4.0, 10.0, 100.0, MOST_FACTOR, f64::INFINITY] {
             let x = left + along(factor);
             let name = if factor.is_finite() { factor.to_string() } else { "zero".to_owned() };
             let (from, to) = (HEAD - 14.0, height - 8.0);
@@ -150,7 +153,7 @@ fn draw_names(out: &mut dyn Write, strip: &Strip, before: Option<&Strip>, top: f
         writeln!(out, r#"<text x="6" y="{y:.1}" font-weight="bold" font-size="10">{}</text>"#, strip.failure.name())?;
     }
     if is_new_failure || before.is_none_or(|before| before.case != strip.case) {
-        writeln!(out, r#"<text x="92" y="{y:.1}" font-size="9">{}</text>"#, strip.case)?;
+        writeln!(out, r#"<text x="98" y="{y:.1}" font-size="9">{}</text>"#, strip.case)?;
     }
     Ok(())
 }
@@ -158,12 +161,14 @@ fn draw_names(out: &mut dyn Write, strip: &Strip, before: Option<&Strip>, top: f
 fn draw_dots(out: &mut dyn Write, factors: &[f64], left: f64, top: f64, colour: &str) -> io::Result<()> {
     let y = top + 0.5 * STRIP;
     let shown = factors.len().min(MOST_DOTS);
+    writeln!(out, r#"<g fill="{colour}" fill-opacity="0.45">"#)?;
     for place in 0..shown {
         // Both ends are drawn.
         let number = if shown > 1 { place * (factors.len() - 1) / (shown - 1) } else { 0 };
         let x = left + along(factors[number]);
-        writeln!(out, r#"<circle cx="{x:.1}" cy="{y:.1}" r="2.2" fill="{colour}" fill-opacity="0.45"/>"#)?;
+        writeln!(out, r#"<circle cx="{x:.1}" cy="{y:.1}" r="2.2"/>"#)?;
     }
+    writeln!(out, "</g>")?;
     let p95 = Spread { factors: factors.to_vec(), ..Spread::default() }.p95();
     if let Some(x) = p95.map(|factor| left + along(factor)) {
         let (from, to) = (top + 0.5, top + STRIP - 0.5);
@@ -175,12 +180,13 @@ fn draw_dots(out: &mut dyn Write, factors: &[f64], left: f64, top: f64, colour: 
     Ok(())
 }
 
-/// Where a factor stands along its panel.
+/// Where a factor stands along its panel: by the logarithm of what it has above 1.
 fn along(factor: f64) -> f64 {
     if factor.is_infinite() {
         return PANEL;
     }
-    (0.94 * PANEL) * (factor.log10() / MOST_FACTOR.log10()).clamp(0.0, 1.0)
+    let above = |factor: f64| ((factor - 1.0).max(LEAST_ABOVE) / LEAST_ABOVE).log10();
+    0.94 * PANEL * (above(factor) / above(MOST_FACTOR)).min(1.0)
 }
 
 fn colour(method: usize) -> &'static str {

@@ -17,7 +17,8 @@ pub struct Direct {
 }
 
 /// Light straight from emitter number `emitter` to a point that stands clear of its own surface by
-/// [`Rays::epsilon_m`](crate::rays::Rays::epsilon_m). `samples` shadow rays (for point lights: one), placed by `offset`.
+/// [`Rays::epsilon_m`](crate::rays::Rays::epsilon_m). `samples` shadow rays (for point lights one, to
+/// bodies close by more), placed by `offset`.
 pub fn direct(
     model: &Model,
     position_m: Vec3,
@@ -28,7 +29,8 @@ pub fn direct(
 ) -> Direct {
     let mut sum = Direct::default();
     let mut taken = 0;
-    for index in 0..samples.max(1) {
+    let samples = samples.max(1) * model.sampler.nearness(emitter, position_m);
+    for index in 0..samples {
         let sample = model.sampler.sample(emitter, position_m, sequence::square(index, offset));
         taken += 1;
         let Some(light) = sample else { continue };

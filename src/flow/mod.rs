@@ -62,7 +62,14 @@ pub fn ladder(method: Method) -> Vec<Rung> {
         Method::Backward => one(Box::new(backward::estimate)),
         Method::Forward => one(Box::new(forward::estimate)),
         Method::Diffusion => diffusion::BOUNCES.map(by_diffusion).into(),
-        Method::Network => one(network::with(network::Quality::MEDIUM)),
+        Method::Network => {
+            let rung = |(quality, how): (&str, network::Quality)| Rung {
+                method,
+                quality: quality.to_owned(),
+                estimate: network::with(how),
+            };
+            network::LADDER.map(rung).into()
+        }
         Method::Trace => Vec::new(),
     }
 }

@@ -17,6 +17,9 @@ mod layers;
 /// The program as a user meets it.
 mod program;
 
+/// Stability where methods fail.
+mod stress;
+
 /// The generated scenes, modelled.
 mod modelled;
 

@@ -12,17 +12,17 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn lightvein(arguments: &[&str]) -> Command {
+pub fn lightvein(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lightvein"));
     command.current_dir(root()).args(arguments).stdin(Stdio::null());
     command
 }
 
-fn run(arguments: &[&str]) -> Output {
+pub fn run(arguments: &[&str]) -> Output {
     lightvein(arguments).output().unwrap()
 }
 
-fn text(bytes: &[u8]) -> String {
+pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
@@ -81,6 +81,12 @@ fn the_program_answers_every_broken_file_by_one_line() {
 #[test]
 fn a_grid_that_does_not_fit_says_which_voxel_would() {
     refuses(&["analyse", GALLERY, "--voxel", "0.00001"], 1, "--voxel");
+}
+
+#[test]
+fn any_number_of_threads_runs_and_gives_the_same_figures() {
+    let sensors = |threads| json(&["analyse", GALLERY, "--threads", threads]).0["sensors"].clone();
+    assert_eq!(sensors("1"), sensors("3"));
 }
 
 #[test]
@@ -311,7 +317,7 @@ fn house(folder: &Path, rest: &str) -> String {
 
 /// The object that `--json` gives, and what stderr says.
 #[track_caller]
-fn json(arguments: &[&str]) -> (Value, String) {
+pub fn json(arguments: &[&str]) -> (Value, String) {
     let output = lightvein(arguments).arg("--json").output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
     (serde_json::from_slice(&output.stdout).unwrap(), text(&output.stderr))

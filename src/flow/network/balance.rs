@@ -39,6 +39,32 @@ pub fn reflected_w_m2(exchange: &Exchange, reflectances: &[f64], landed_w: &[Vec
     radiosities.iter().map(|radiosity_w_m2| arriving_w_m2(exchange, radiosity_w_m2)).collect()
 }
 
+/// Whether light that lands is never absorbed: patches that see each other reflect all, and none of it is lost.
+pub fn without_end(exchange: &Exchange, reflectances: &[f64], landed_w: &[f64]) -> bool {
+    // What patches hang together with, the lowest number leads.
+    let mut leader: Vec<usize> = (0..reflectances.len()).collect();
+    let find = |leader: &mut Vec<usize>, mut patch: usize| {
+        while leader[patch] != patch {
+            leader[patch] = leader[leader[patch]];
+            patch = leader[patch];
+        }
+        patch
+    };
+    for &(i, j, _) in &exchange.pairs {
+        let (a, b) = (find(&mut leader, i as usize), find(&mut leader, j as usize));
+        leader[a.max(b)] = a.min(b);
+    }
+    let (mut seen_m2, mut ends_m2, mut lands_w) =
+        (vec![0.0; leader.len()], vec![0.0; leader.len()], vec![0.0; leader.len()]);
+    for patch in 0..leader.len() {
+        let void = find(&mut leader, patch);
+        seen_m2[void] += exchange.seen_m2[patch];
+        ends_m2[void] += (1.0 - reflectances[patch]) * exchange.seen_m2[patch] + exchange.lost_m2[patch];
+        lands_w[void] += landed_w[patch];
+    }
+    (0..leader.len()).any(|void| lands_w[void] > 0.0 && ends_m2[void] < (1.0 - MOST_REFLECTANCE) * seen_m2[void])
+}
+
 /// The irradiance on each patch by light that patches of these radiosities send out.
 fn arriving_w_m2(exchange: &Exchange, radiosity_w_m2: &[f64]) -> Vec<f64> {
     let mut arriving_w = vec![0.0; radiosity_w_m2.len()];

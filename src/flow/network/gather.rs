@@ -8,7 +8,7 @@
 
 use super::patches::Start;
 use super::walk::{End, walk};
-use super::{Network, Quality};
+use super::{Gather, Network};
 use crate::flow::direct::direct;
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
@@ -39,7 +39,7 @@ const SENSOR_OFFSETS: u64 = 1 << 43;
 /// [`Cancelled`] when `cancel` was raised.
 pub fn gather(
     network: &Network,
-    quality: &Quality,
+    rays: &Gather,
     probes: &[Probe],
     settings: &Settings,
     progress: &dyn Progress,
@@ -52,7 +52,7 @@ pub fn gather(
         .map(|(number, probe)| {
             cancel.check()?;
             progress.advance(1);
-            Ok(at_probe(network, quality, probe, sequence::offset(settings.seed, SENSOR_OFFSETS + number as u64)))
+            Ok(at_probe(network, rays, probe, sequence::offset(settings.seed, SENSOR_OFFSETS + number as u64)))
         })
         .collect();
     progress.end();
@@ -61,7 +61,7 @@ pub fn gather(
         emitters: network.grounds.model.shining.len(),
         values_w_m2: rows.into_iter().flatten().collect(),
     });
-    Ok(Field { readings, warnings: Vec::new(), shares })
+    Ok(Field { readings, warnings: network.warnings.clone(), shares })
 }
 
 /// A ray from a sensor and what it meets.
@@ -75,7 +75,7 @@ struct Sight {
     odd: bool,
 }
 
-fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2]) -> (Reading, Vec<f64>) {
+fn at_probe(network: &Network, rays: &Gather, probe: &Probe, offset: [f64; 2]) -> (Reading, Vec<f64>) {
     let model = network.grounds.model;
     let lamps = model.shining.len();
     let Ok(node) = probe.place else {
@@ -83,7 +83,7 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
     };
     let from_m = probe.position_m + probe.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
     let (mut value_w_m2, mut flux_w_m2, mut row) = (0.0, DVec3::ZERO, vec![0.0; lamps]);
-    for shining in model.shining.iter().filter(|shining| shining.place.is_ok() && shining.flux_w > 0.0) {
+    for shining in network.lamps() {
         let straight = direct(model, from_m, probe.normal, shining.emitter, DIRECT_RAYS, offset);
         value_w_m2 += straight.value_w_m2;
         flux_w_m2 += straight.flux_w_m2;
@@ -91,7 +91,7 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
     }
 
     let cell = model.skeleton.graph.node_weight(node).map_or(u32::MAX, |node| node.cell);
-    let sights = sights(network, quality, from_m, probe.normal, cell, offset);
+    let sights = sights(network, rays, from_m, probe.normal, cell, offset);
     let mut met: Vec<u32> = sights.iter().map(|sight| sight.patch).collect();
     met.sort_unstable();
     let rays_to =
@@ -104,13 +104,8 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
         let reflects = f64::from(sight.at.answer.reflects);
         let cosine = probe.normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
         let weight = reflects * sight.weight;
-        let is_large =
-            rays_to(sight.patch) >= std::env::var("LF").ok().and_then(|v| v.parse().ok()).unwrap_or(LARGE_FROM_RAYS);
-        let reflected_w_m2: f64 = if std::env::var("ZERO").is_ok() {
-            0.0
-        } else {
-            network.reflected_w_m2.iter().map(|column| column[patch]).sum()
-        };
+        let is_large = rays_to(sight.patch) >= LARGE_FROM_RAYS;
+        let reflected_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[patch]).sum();
         let area_m2 = network.grounds.patches.list[patch].area_m2;
         let all_w_m2: f64 =
             reflected_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;
@@ -140,14 +135,14 @@ fn at_probe(network: &Network, quality: &Quality, probe: &Probe, offset: [f64; 2
     let noise = 0.5 * (halves[0] - halves[1]);
     let lines = 0.5 * (variants[0] - variants[1]);
     let error = noise.hypot(lines).hypot(0.5 * variants[2]);
-    let status = if value_w_m2 > 0.0 { Status::Ok } else { Status::Dark };
+    let status = network.status(node, value_w_m2);
     (Reading { value_w_m2, flux_w_m2, error_w_m2: Some(error), status }, row)
 }
 
 /// The rays of a sensor, with what they meet.
 fn sights(
     network: &Network,
-    quality: &Quality,
+    rays: &Gather,
     from_m: Vec3,
     normal: Option<Vec3>,
     cell: u32,
@@ -155,7 +150,7 @@ fn sights(
 ) -> Vec<Sight> {
     let portals: Vec<&super::Portal> =
         (network.grounds.portals.iter()).filter(|portal| portal.cells.contains(&cell)).take(MOST_NECKS).collect();
-    let count = quality.gather_rays;
+    let count = rays.rays;
     let over_all = (0..count).map(|ray| match normal {
         None => sequence::spiral(ray, count, offset),
         Some(normal) if ray % 2 == 0 => sequence::cosine_about(normal, sequence::square(ray, offset)),
@@ -166,8 +161,8 @@ fn sights(
         }
     });
     let to_necks = portals.iter().flat_map(|portal| {
-        let toward = move |ray| (portal.point_m(ray, quality.gather_neck_rays, offset) - from_m).normalize_or_zero();
-        (0..quality.gather_neck_rays).map(toward)
+        let toward = move |ray| (portal.point_m(ray, rays.neck_rays, offset) - from_m).normalize_or_zero();
+        (0..rays.neck_rays).map(toward)
     });
     let density_per_sr = |direction: Vec3| {
         let over_all = match normal {
@@ -179,7 +174,7 @@ fn sights(
         let to_necks = portals.iter().filter_map(|portal| {
             let crossing = portal.crossing(from_m, direction, f32::INFINITY)?;
             let squared = f64::from(crossing.distance_m).powi(2);
-            Some(f64::from(quality.gather_neck_rays) * squared / (portal.area_m2 * f64::from(crossing.cosine)))
+            Some(f64::from(rays.neck_rays) * squared / (portal.area_m2 * f64::from(crossing.cosine)))
         });
         over_all + to_necks.sum::<f64>()
     };

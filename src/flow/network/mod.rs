@@ -3,7 +3,8 @@
 //! Steps, each in its file: the void is parted into [zones] that never cross a neck; what a zone sees in one direction is a
 //! [patch](patches); [lines] from patches and through [necks](portals) measure what each patch sees of each other; light
 //! [lands](landing) straight from its sources; the [balance] of all reflections is one sparse system; a sensor [gathers] it by
-//! rays over its sphere and through the necks of its room, beside the exact direct light. Oriented patches are the poster's
+//! rays over its sphere and through the necks of its room, beside the exact direct light; or the zones are [read] without a
+//! ray more, for many thousands of points. Oriented patches are the poster's
 //! own next step, "an oriented reflectivity a node" (Chaussard, Biri, Couprie); the balance is radiosity (Goral et al. 1984)
 //! with lines in place of form factors (Sbert 1993), weighed by the balance heuristic (Veach & Guibas 1995).
 //!
@@ -15,24 +16,32 @@
 
 pub mod balance;
 pub mod exchange;
-mod gather;
+pub mod gather;
 pub mod landing;
 pub mod lines;
 pub mod patches;
 pub mod portals;
+pub mod read;
 pub mod walk;
 pub mod zones;
 
 use crate::flow::Estimator;
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Field, Settings};
-use crate::model::{Model, Probe};
+use crate::light::{Field, Settings, Status};
+use crate::model::{Model, Probe, Shining};
 use exchange::{Exchange, Half};
 use glam::Vec3;
 use landing::{Landing, landing};
+use lines::Line;
 use patches::{Patches, Start};
+use petgraph::graph::NodeIndex;
 use portals::Portal;
+use read::Tracks;
 use zones::Zones;
+
+/// Told where light never ends.
+const NOTHING_ABSORBS: &str = "the walls of a void absorb nothing: their light has no balance, and stands for a reflectance \
+                               of 0.999999";
 
 /// How finely a network is made and asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,13 +56,30 @@ pub struct Quality {
     pub photons: u32,
     /// Shadow rays from a patch to a light.
     pub shadow_rays: u32,
-    /// Rays from a sensor.
-    pub gather_rays: u32,
-    /// Rays from a sensor to each neck of its room.
-    pub gather_neck_rays: u32,
+    /// Rays by which sensors gather; `None` to read the zones.
+    pub gather: Option<Gather>,
+}
+
+/// The rays of a sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Gather {
+    /// Over all it sees.
+    pub rays: u32,
+    /// To each neck of its room.
+    pub neck_rays: u32,
 }
 
 impl Quality {
+    /// Large zones, few lines.
+    pub const COARSE: Self = Self {
+        spacing: 0.8,
+        lines: 8,
+        neck_lines: 256,
+        photons: 2048,
+        shadow_rays: 8,
+        gather: Some(Gather { rays: 128, neck_rays: 32 }),
+    };
+
     /// The default.
     pub const MEDIUM: Self = Self {
         spacing: 0.4,
@@ -61,10 +87,33 @@ impl Quality {
         neck_lines: 1024,
         photons: 4096,
         shadow_rays: 16,
-        gather_rays: 256,
-        gather_neck_rays: 64,
+        gather: Some(Gather { rays: 512, neck_rays: 128 }),
     };
+
+    /// Small zones, many lines.
+    pub const FINE: Self = Self {
+        spacing: 0.28,
+        lines: 48,
+        neck_lines: 4096,
+        photons: 32_768,
+        shadow_rays: 32,
+        gather: Some(Gather { rays: 4096, neck_rays: 512 }),
+    };
+
+    /// The same network, read at its zones.
+    pub const fn read(self) -> Self {
+        Self { gather: None, ..self }
+    }
 }
+
+/// The qualities, the cheapest first, with their names.
+pub const LADDER: [(&str, Quality); 5] = [
+    ("coarse, read", Quality::COARSE.read()),
+    ("coarse", Quality::COARSE),
+    ("read", Quality::MEDIUM.read()),
+    ("", Quality::MEDIUM),
+    ("fine", Quality::FINE),
+];
 
 /// Irradiance at the probes by the network at its default quality.
 ///
@@ -95,16 +144,14 @@ fn estimate_at(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Field, Cancelled> {
-    let mut quality = quality;
-    let get = |k: &str, d: f32| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-    quality.spacing = get("SP", quality.spacing);
-    quality.lines = get("LN", quality.lines as f32) as u32;
-    quality.neck_lines = get("NL", quality.neck_lines as f32) as u32;
-    quality.gather_rays = get("GR", quality.gather_rays as f32) as u32;
-    quality.gather_neck_rays = get("GN", quality.gather_neck_rays as f32) as u32;
-    quality.shadow_rays = get("SR", quality.shadow_rays as f32) as u32;
-    let network = Network::new(model, &quality, settings, progress, cancel)?;
-    gather::gather(&network, &quality, probes, settings, progress, cancel)
+    let (network, lines) = Network::new(model, &quality, settings, progress, cancel)?;
+    match &quality.gather {
+        Some(gather) => gather::gather(&network, gather, probes, settings, progress, cancel),
+        None => {
+            let tracks = network.tracks(&lines, settings);
+            read::read(&network, &tracks, probes, settings, progress, cancel)
+        }
+    }
 }
 
 /// What a network stands on.
@@ -151,10 +198,14 @@ pub struct Network<'a> {
     pub reflected_w_m2: Vec<Vec<f64>>,
     /// The same for all together by either half of the lines and by a coarser network: what the error is judged by.
     variants_w_m2: [Vec<f64>; 3],
+    /// For each node whether a path through the void joins it to a light.
+    lit: Vec<bool>,
+    /// What a reader of its fields should know.
+    warnings: Vec<String>,
 }
 
 impl<'a> Network<'a> {
-    /// Measures and solves the network of a model. Costs the rays that `quality` says, some microseconds each.
+    /// Measures and solves the network of a model; the lines that it stands on beside it. Costs the rays that `quality` says, some microseconds each.
     ///
     /// # Errors
     /// [`Cancelled`] when `cancel` was raised.
@@ -164,7 +215,7 @@ impl<'a> Network<'a> {
         settings: &Settings,
         progress: &dyn Progress,
         cancel: &Cancel,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<(Self, Vec<Line>), Cancelled> {
         progress.begin("zones", 0);
         let grounds = Grounds::new(model, quality, settings.seed);
         progress.end();
@@ -186,8 +237,9 @@ impl<'a> Network<'a> {
         cancel.check()?;
 
         progress.begin("landing", 0);
-        let landings: Vec<Landing> =
-            model.shining.iter().map(|shining| landing(&grounds, quality, shining, settings.seed)).collect();
+        let promised = landing::promised(&grounds);
+        let of = |shining| landing(&grounds, quality, shining, &promised, settings.seed);
+        let landings: Vec<Landing> = model.shining.iter().map(of).collect();
         progress.end();
         cancel.check()?;
 
@@ -205,27 +257,60 @@ impl<'a> Network<'a> {
         };
         let coarse = coarser(&grounds, &lines, &reflectances, &all_w);
         let variants_w_m2 = [by(&odd), by(&even), coarse];
-        if std::env::var("DUMP").is_ok() {
-            for (k, p) in grounds.patches.list.iter().enumerate() {
-                let st = &grounds.patches.starts[p.starts.clone()];
-                let lo = st.iter().fold(Vec3::INFINITY, |a, s| a.min(s.position_m));
-                let hi = st.iter().fold(Vec3::NEG_INFINITY, |a, s| a.max(s.position_m));
-                let cell = grounds.zones.groups().find(|(r, _)| r.contains(&p.zone)).map(|(_, c)| c);
-                eprintln!(
-                    "P {k} cell {cell:?} zone {} lo {lo:.2} hi {hi:.2} A {:.3} D {:.3} rho {:.2} E0 {:.4} Er {:.4} n {}",
-                    p.zone,
-                    p.area_m2,
-                    exchange.seen_m2[k],
-                    p.reflectance,
-                    landings.iter().map(|l| l.flux_w[k]).sum::<f64>() / p.area_m2,
-                    reflected_w_m2.iter().map(|c| c[k]).sum::<f64>(),
-                    st.len()
-                );
-            }
-        }
         progress.end();
-        Ok(Self { grounds, exchange, landings, reflected_w_m2, variants_w_m2 })
+        let lit = lit(model);
+        let warnings = balance::without_end(&exchange, &reflectances, &all_w).then(|| NOTHING_ABSORBS.to_owned());
+        let warnings = warnings.into_iter().collect();
+        Ok((Self { grounds, exchange, landings, reflected_w_m2, variants_w_m2, lit, warnings }, lines))
     }
+
+    /// The diffuse field in the zones, by the lines that the network stands on; the variants after the columns.
+    pub fn tracks(&self, lines: &[Line], settings: &Settings) -> Tracks {
+        let patches = &self.grounds.patches.list;
+        let radiosity = |reflected_w_m2: &Vec<f64>, landed_w: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let of = |(number, patch): (usize, &patches::Patch)| {
+                landed_w(number) / patch.area_m2 + patch.reflectance * reflected_w_m2[number]
+            };
+            patches.iter().enumerate().map(of).collect()
+        };
+        let all = |patch: usize| self.landings.iter().map(|landing| landing.reflected_w[patch]).sum::<f64>();
+        let each = self.reflected_w_m2.len() == self.landings.len();
+        let columns = self.reflected_w_m2.iter().enumerate().map(|(column, reflected_w_m2)| match each {
+            true => radiosity(reflected_w_m2, &|patch| self.landings[column].reflected_w[patch]),
+            false => radiosity(reflected_w_m2, &all),
+        });
+        let variants = self.variants_w_m2.iter().map(|variant| radiosity(variant, &all));
+        let radiosity_w_m2: Vec<Vec<f64>> = columns.chain(variants).collect();
+        Tracks::new(&self.grounds, lines, &radiosity_w_m2, self.reflected_w_m2.len(), settings.seed)
+    }
+
+    /// The lights that shine into the void.
+    fn lamps(&self) -> impl Iterator<Item = &Shining> {
+        self.grounds.model.shining.iter().filter(|shining| shining.place.is_ok() && shining.flux_w > 0.0)
+    }
+
+    /// What became of a sensor at that node with that value.
+    fn status(&self, node: NodeIndex, value_w_m2: f64) -> Status {
+        match self.lit.get(node.index()) {
+            _ if value_w_m2 > 0.0 => Status::Ok,
+            Some(true) => Status::Dark,
+            _ => Status::Unreached,
+        }
+    }
+}
+
+/// For each node whether it hangs together with that of a light.
+fn lit(model: &Model) -> Vec<bool> {
+    let graph = &model.skeleton.graph;
+    let mut lit = vec![false; graph.node_count()];
+    let mut open: Vec<NodeIndex> = model.shining.iter().filter_map(|shining| shining.place.ok()).collect();
+    while let Some(node) = open.pop() {
+        if lit.get(node.index()) == Some(&false) {
+            lit[node.index()] = true;
+            open.extend(graph.neighbors(node));
+        }
+    }
+    lit
 }
 
 /// The reflected irradiance on each patch by a network whose zones see all around with one patch.

@@ -39,8 +39,6 @@ struct Group {
     first: u32,
     /// The cell it is a part of.
     cell: u32,
-    /// The width of the void at its widest node, metres.
-    width_m: f32,
     /// The lowest corner of the box around its voxels, metres.
     low_m: Vec3,
     /// The edges of its blocks, metres.
@@ -59,12 +57,13 @@ impl Zones {
         let lattice = &model.voxels.lattice;
         let mut count = 0;
         let groups = boxes.iter().zip(widths_m.iter().zip(&cells)).map(|(&(low, high), (&width_m, &cell))| {
-            let size_m = (high - low).max(IVec3::ZERO).as_vec3() * lattice.voxel_m;
+            // A group whose nodes are nearest to no voxel has an empty box.
+            let (low, high) = if low.cmplt(high).all() { (low, high) } else { (IVec3::ZERO, IVec3::ONE) };
+            let size_m = (high - low).as_vec3() * lattice.voxel_m;
             let blocks = (size_m / (spacing * width_m)).round().clamp(Vec3::ONE, Vec3::splat(MOST_BLOCKS));
             let group = Group {
                 first: count,
                 cell,
-                width_m,
                 low_m: lattice.corner_m(low),
                 block_m: (size_m / blocks).max(Vec3::splat(lattice.voxel_m)),
                 blocks: blocks.as_ivec3(),
@@ -94,10 +93,10 @@ impl Zones {
         })
     }
 
-    /// The width of the void about a node, metres; 0 for a number beyond the skeleton.
-    pub fn width_m(&self, node: u32) -> f32 {
+    /// The shortest edge of the zones about a node, metres; 0 for a number beyond the skeleton.
+    pub fn edge_m(&self, node: u32) -> f32 {
         let group = self.group_of.get(node as usize).and_then(|&group| self.groups.get(group as usize));
-        group.map_or(0.0, |group| group.width_m)
+        group.map_or(0.0, |group| group.block_m.min_element())
     }
 }
 

@@ -44,7 +44,8 @@ impl Asked<'_> {
     }
 
     /// The path-traced truth with so many samples, at up to `most` of the scene's sensors, evenly from first to last; an
-    /// entry a sensor. A sensor inside a light has none.
+    /// entry a sensor. A sensor inside a light has none, nor one that no sample found light for: that is no proof, unless
+    /// `zero_is_true`.
     ///
     /// # Errors
     /// [`Cancelled`] when the run was stopped.
@@ -54,6 +55,7 @@ impl Asked<'_> {
         model: &Model,
         samples: u32,
         most: usize,
+        zero_is_true: bool,
     ) -> Result<Vec<Option<Reference>>, Cancelled> {
         let count = scene.sensors.len();
         let chosen: Vec<usize> = (0..count.min(most)).map(|place| place * count / count.min(most)).collect();
@@ -65,7 +67,8 @@ impl Asked<'_> {
 
         let mut truth = vec![None; count];
         for (&number, reading) in chosen.iter().zip(&field.readings) {
-            truth[number] = (reading.status != Status::InSolid).then(|| known(reading));
+            let is_known = reading.value_w_m2 > 0.0 || zero_is_true;
+            truth[number] = (reading.status != Status::InSolid && is_known).then(|| known(reading));
         }
         Ok(truth)
     }

@@ -23,7 +23,7 @@ pub fn stress_built_in(voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancelled
 }
 
 fn rows_of(built: &Built, voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancelled> {
-    let Built { failure, case, scene, samples_times } = built;
+    let Built { failure, case, scene, samples_times, is_shut } = built;
     let names = asked.contestants.iter().map(|contestant| &contestant.name);
     let mut rows: Vec<Row> = names.map(|name| Row::new(scene, *failure, case, name)).collect();
     let model = match asked.model(scene, scene.model.voxel_m.unwrap_or(voxel_m)) {
@@ -31,7 +31,7 @@ fn rows_of(built: &Built, voxel_m: f32, asked: Asked) -> Result<Vec<Row>, Cancel
         Err(error) => return not_modelled(&mut rows, &error).map(|()| rows),
     };
     let samples = asked.trials.samples.saturating_mul(*samples_times);
-    let truth = asked.traced(scene, &model, samples, usize::MAX)?;
+    let truth = asked.traced(scene, &model, samples, usize::MAX, *is_shut)?;
 
     for (row, field) in rows.iter_mut().zip(asked.fields(scene, &model, asked.trials.seed)?) {
         row.add(&field, None, &truth);
@@ -81,6 +81,26 @@ mod tests {
         let shut = ("shut", "4 unreached", "no light reaches");
         let door = ("door", "3 ok", "");
         check(Failure::ThinWall, &[shut, shut, door, ("door", "", "")]);
+    }
+
+    #[test]
+    fn no_method_sees_light_through_matter() {
+        let failures = [Failure::ThinWall, Failure::InSolid, Failure::SeparateVoids];
+        let trials = Trials { failures: failures.into(), samples: 8, ..Trials::default() };
+        let methods = Method::ALL.into_iter().filter(|&method| method != Method::Trace);
+        let contestants: Vec<Contestant> = methods.map(Contestant::built_in).collect();
+        let asked = Asked { contestants: &contestants, trials: &trials, progress: &Quiet, cancel: &Cancel::new() };
+        for row in stress_built_in(0.1, asked).unwrap() {
+            let shut = row.case.ends_with("shut") || row.case.starts_with("the light in");
+            assert_eq!(row.truth.phantom, 0, "{} {}: light where there is none", row.case, row.method);
+            assert!(
+                !shut || row.statuses.unreached == row.sensors.len(),
+                "{} {}: {:?}",
+                row.case,
+                row.method,
+                row.statuses
+            );
+        }
     }
 
     #[test]

@@ -118,7 +118,8 @@ fn roughly(before: &Undisturbed) -> Result<Vec<Row>, Cancelled> {
         let [amplitude_m, bump_m] = [voxels, BUMP_VOXELS].map(|voxels| voxels * before.voxel_m());
         let scene = roughened(before.scene, amplitude_m, bump_m, asked.trials.seed);
         let model = asked.model(&scene, before.voxel_m());
-        let truth = model.as_ref().map(|model| asked.traced(&scene, model, asked.trials.samples, TRACED_SENSORS));
+        let truth =
+            model.as_ref().map(|model| asked.traced(&scene, model, asked.trials.samples, TRACED_SENSORS, false));
         before.add(&mut rows, &scene, &model, &truth.unwrap_or(Ok(Vec::new()))?, |field| field)?;
         Ok(rows)
     };
@@ -137,7 +138,7 @@ fn painted(before: &Undisturbed) -> Result<Vec<Row>, Cancelled> {
         };
         let can_trace = reflectance <= MOST_TRACED;
         let sensors = if can_trace { TRACED_SENSORS } else { 0 };
-        let truth = asked.traced(&scene, &model, asked.trials.samples, sensors)?;
+        let truth = asked.traced(&scene, &model, asked.trials.samples, sensors, reflectance == 0.0)?;
         let fields = asked.fields(&scene, &model, asked.trials.seed)?;
         for ((row, field), was) in rows.iter_mut().zip(&fields).zip(&before.fields) {
             row.add(field, None, &truth);
@@ -224,7 +225,7 @@ mod tests {
         assert!(of(Failure::Seed).iter().all(|row| row.moved.max() == Some(1.0)), "no random numbers in these");
         let base = of(Failure::VoxelSize).into_iter().filter(|row| row.case == "voxels x 1");
         assert!(base.into_iter().all(|row| row.moved.max() == Some(1.0)));
-        assert!(of(Failure::WallNoise).iter().all(|row| row.truth.count() == 2));
+        assert!(of(Failure::WallNoise).iter().all(|row| row.truth.count() > 0));
         let black = of(Failure::Reflectance)[0];
         assert_eq!((black.case.as_str(), black.truth.phantom), ("0", 1), "backward sees light round a black corner");
         assert_eq!(of(Failure::Tie).len(), 0);

@@ -19,6 +19,8 @@ pub struct Built {
     pub scene: Scene,
     /// Samples that its truth takes, in multiples of [`Trials::samples`](super::Trials::samples).
     pub samples_times: u32,
+    /// Whether walls without any opening part lights from sensors, so that a truth of zero is one.
+    pub is_shut: bool,
 }
 
 /// Reflectance of the walls, where nothing else is said.
@@ -277,7 +279,8 @@ fn built(
         model: ModelChoice::default(),
         ..Scene::default()
     };
-    Built { failure, case: case.to_owned(), scene, samples_times }
+    let is_shut = matches!(failure, Failure::InSolid | Failure::SeparateVoids) || case.ends_with("shut");
+    Built { failure, case: case.to_owned(), scene, samples_times, is_shut }
 }
 
 fn at(place: [f32; 3]) -> Vec3 {

@@ -172,7 +172,7 @@ impl Row {
     pub fn worst(&self) -> Option<(&str, usize)> {
         let most = self.moved.max().filter(|&most| most > 1.0)?;
         let number = self.moved.factors.iter().position(|&factor| factor == most)?;
-        let sensor = self.sensors.get(number % self.sensors.len())?;
+        let sensor = self.sensors.get(number.checked_rem(self.sensors.len())?)?;
         Some((sensor, 1 + number / self.sensors.len()))
     }
 
