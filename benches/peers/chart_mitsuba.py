@@ -30,6 +30,8 @@ SENSORS = (7, 1_000, 10_000, 100_000)
 SAMPLES = [4**power for power in range(1, 11)]
 # A reference known to worse than this is left out, as Lightvein leaves it out.
 WORST_REFERENCE = 0.1
+# Seconds by the wall; with --processor-time of all threads.
+CLOCK = time.perf_counter
 HEAD = ("scene", "method", "quality", "sensors", "seconds", "scaled", "rms_factor", "max_factor", "lost")
 
 
@@ -96,7 +98,7 @@ class Sensors:
 
     def run(self, oracle, mi, scene, integrator, samples, seed, lanes):
         """(seconds, {sensor: irradiance}), the clock around the launches and the sums of their samples alone."""
-        began, means = time.perf_counter(), []
+        began, means = CLOCK(), []
         for free, names, positions, normals in self.kinds:
             total, done = np.zeros(len(names)), 0
             while done < samples:
@@ -104,7 +106,7 @@ class Sensors:
                 sums, _ = oracle.llvm_batch(mi, scene, integrator, positions, normals, chunk, 1e-4, seed, free)
                 total, done, seed = total + sums[:, 4], done + chunk, seed + 1
             means.append((names, total / samples))
-        seconds = time.perf_counter() - began
+        seconds = CLOCK() - began
         return seconds, {name: float(value) for names, values in means for name, value in zip(names, values)}
 
 
@@ -162,9 +164,18 @@ def main():
     parser.add_argument("--oracle", required=True)
     parser.add_argument("--budget", type=float, default=20.0, help="seconds; no run is begun that would take longer")
     parser.add_argument("--lanes", type=int, default=1 << 20, help="samples in one launch")
+    parser.add_argument("--threads", type=int, default=0, help="0: one a core")
+    parser.add_argument("--processor-time", action="store_true", help="as lightvein chart --processor-time")
     options = parser.parse_args()
+    if options.processor_time:
+        global CLOCK
+        CLOCK = time.process_time
     began = time.perf_counter()
     oracle, mi = load(options.oracle)
+    if options.threads:
+        import drjit
+
+        drjit.set_thread_count(options.threads)
     print(f"Mitsuba {mi.__version__} started in {time.perf_counter() - began:.1f} s, not counted", file=sys.stderr)
     print(f"# Mitsuba {mi.__version__}, llvm_ad_mono, {options.lanes} samples a launch, roulette from depth 8; by benches/peers/chart_mitsuba.py")
     out = csv.writer(sys.stdout, lineterminator="\n")

@@ -47,6 +47,10 @@ pub enum Command {
         /// The same for the path tracer's runs; by default as --budget
         #[arg(long, value_name = "SECONDS", value_parser = seconds)]
         trace_budget: Option<f64>,
+        /// Count the processor time of all threads, not wall time: on a machine that has other work to do. With --threads 1
+        /// it is the time an idle core would take. Linux only
+        #[arg(long)]
+        processor_time: bool,
         /// A table of another program's points, as benches/peers/chart_mitsuba.py writes it; joins the scenes it names
         #[arg(long, value_name = "FILE")]
         peer: Vec<PathBuf>,

@@ -3,7 +3,7 @@
 use super::args::Many;
 use super::peer;
 use super::run::{most_bytes, say, warn};
-use super::stages::Stages;
+use super::stages::{Stages, processor_seconds};
 use super::tell;
 use super::write::Folder;
 use crate::export::chart::{png, write_csv, write_svg};
@@ -24,18 +24,41 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Runs the command; `budgets` are the seconds of one run of an estimate and of the path tracer.
+/// How runs are timed.
+pub struct Timing {
+    /// Seconds that one run of an estimate may take.
+    pub budget: f64,
+    /// The same for the path tracer.
+    pub trace_budget: f64,
+    /// Whether processor time is counted, not wall time.
+    pub processor_time: bool,
+}
+
+impl Timing {
+    /// What is counted, for axes and texts.
+    fn name(&self) -> String {
+        match (self.processor_time, rayon::current_num_threads()) {
+            (true, threads) => format!("processor time, {threads} thread{}", if threads == 1 { "" } else { "s" }),
+            (false, threads) => format!("time on {threads} thread{}", if threads == 1 { "" } else { "s" }),
+        }
+    }
+}
+
+/// Runs the command.
 ///
 /// # Errors
 /// Bad input, a scene without a reference, or an interrupt.
-pub fn run(many: &Many, budgets: [f64; 2], peers: &[PathBuf], cancel: &Cancel) -> Result<()> {
+pub fn run(many: &Many, timing: &Timing, peers: &[PathBuf], cancel: &Cancel) -> Result<()> {
     let mut folder = Folder::new(&many.output)?;
+    if timing.processor_time && processor_seconds().is_none() {
+        bail!("--processor-time: this system does not tell the processor time of threads");
+    }
     let peers = peer::read_all(peers)?;
     if let Some(threads) = many.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
         pool.build_global().context("the threads cannot be started")?;
     }
-    let measured = many.scenes.iter().map(|path| measure(path, many, budgets, cancel));
+    let measured = many.scenes.iter().map(|path| measure(path, many, timing, cancel));
     let mut charts = measured.collect::<Result<Vec<SceneChart>>>()?;
     for chart in &mut charts {
         chart.points.extend(peers.points_of(&chart.scene));
@@ -49,7 +72,7 @@ pub fn run(many: &Many, budgets: [f64; 2], peers: &[PathBuf], cancel: &Cancel) -
         tell("warning: chart.png has no text: this system has no font; chart.svg has all of it");
     }
     let text = charts.iter().map(verdict).collect::<Vec<_>>().join("\n");
-    let json = serde_json::to_string(&Charted::new(budgets[0], &charts))?;
+    let json = serde_json::to_string(&Charted::new(timing.budget, &charts))?;
     folder.file("chart.svg", |out| out.write_all(&svg))?;
     folder.file("chart.png", |out| out.write_all(&picture.bytes))?;
     folder.file("chart.csv", |out| write_csv(out, &charts))?;
@@ -59,12 +82,7 @@ pub fn run(many: &Many, budgets: [f64; 2], peers: &[PathBuf], cancel: &Cancel) -
 }
 
 /// All points of one scene.
-fn measure(
-    path: &Path,
-    many: &Many,
-    [budget_seconds, trace_budget_seconds]: [f64; 2],
-    cancel: &Cancel,
-) -> Result<SceneChart> {
+fn measure(path: &Path, many: &Many, timing: &Timing, cancel: &Cancel) -> Result<SceneChart> {
     let stages = Stages::new(std::io::stderr().is_terminal());
     stages.begin("load", 0);
     let scene = Scene::load(path, &stages, cancel)?;
@@ -86,18 +104,20 @@ fn measure(
         }
     };
     let began = Instant::now();
+    let wall = || began.elapsed().as_secs_f64();
     let measurement = Measurement {
         scene: &scene,
         rays: &rays,
         voxel_m,
-        budget_seconds,
-        trace_budget_seconds,
+        budget_seconds: timing.budget,
+        trace_budget_seconds: timing.trace_budget,
         max_bytes: most_bytes(),
         settings: Settings { seed: many.seed.or(scene.model.seed).unwrap_or(0), ..Settings::default() },
-        clock: &|| began.elapsed().as_secs_f64(),
+        clock: if timing.processor_time { &|| processor_seconds().unwrap_or(f64::NAN) } else { &wall },
     };
     let chart = measurement.run(&stages, cancel)?;
-    Ok(SceneChart { load_seconds: stages.seconds_of("load"), rays_seconds: stages.seconds_of("rays"), ..chart })
+    let [load_seconds, rays_seconds] = ["load", "rays"].map(|stage| stages.seconds_of(stage));
+    Ok(SceneChart { load_seconds, rays_seconds, timed_by: timing.name(), ..chart })
 }
 
 /// `chart --json`.

@@ -32,8 +32,10 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
     match args.command {
         Command::Analyse { common, method } => run_analyse(&common, method, cancel),
         Command::Compare { common, methods, spp } => run_compare(&common, &methods, spp, cancel),
-        Command::Chart { many, budget, trace_budget, peer } => {
-            chart::run(&many, [budget, trace_budget.unwrap_or(budget)], &peer, cancel)
+        Command::Chart { many, budget, trace_budget, processor_time, peer } => {
+            let trace_budget = trace_budget.unwrap_or(budget);
+            let timing = chart::Timing { budget, trace_budget, processor_time };
+            chart::run(&many, &timing, &peer, cancel)
         }
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
         Command::Stress(args) => stress::run(&args, cancel),

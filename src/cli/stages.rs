@@ -120,6 +120,16 @@ pub fn available_bytes() -> Option<u64> {
     kilobytes("/proc/meminfo", "MemAvailable:").map(|kilobytes| (kilobytes * 1024.0) as u64)
 }
 
+/// Processor time that all threads of this process have had, seconds, as Linux tells it; `None` elsewhere.
+pub fn processor_seconds() -> Option<f64> {
+    let threads = std::fs::read_dir("/proc/self/task").ok()?;
+    let nanoseconds = threads.map(|thread| {
+        let text = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    });
+    Some(nanoseconds.collect::<Option<Vec<f64>>>()?.iter().sum::<f64>() / 1e9)
+}
+
 /// The entry of that name in one of Linux's tables of sizes.
 fn kilobytes(table: &str, name: &str) -> Option<f64> {
     let text = std::fs::read_to_string(table).ok()?;
@@ -130,6 +140,14 @@ fn kilobytes(table: &str, name: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn processor_time_passes_while_work_is_done() {
+        let before = processor_seconds().unwrap();
+        let sum: u64 = (0..20_000_000_u64).map(std::hint::black_box).sum();
+        assert!(sum > 0 && processor_seconds().unwrap() > before);
+    }
 
     #[test]
     fn stages_nest_and_keep_their_order() {

@@ -69,9 +69,10 @@ fn draw_row(out: &mut dyn Write, chart: &SceneChart, top: f64) -> io::Result<()>
         )?;
         writeln!(
             out,
-            r##"<text x="{:.1}" y="{:.1}" text-anchor="middle" fill="#444444">time, preparation included</text>"##,
+            r##"<text x="{:.1}" y="{:.1}" text-anchor="middle" fill="#444444">{}, preparation included</text>"##,
             left + WIDTH / 2.0,
-            below + 34.0
+            below + 34.0,
+            escaped(&chart.timed_by)
         )?;
     }
     let middle = above + HEIGHT / 2.0;
@@ -150,7 +151,7 @@ mod tests {
             })
             .collect();
         mark_fronts(&mut points);
-        vec![SceneChart { scene: "a < b".to_owned(), points, ..SceneChart::default() }; 2]
+        vec![SceneChart { scene: "a < b".to_owned(), timed_by: "time".to_owned(), points, ..SceneChart::default() }; 2]
     }
 
     /// Whether no place in a picture is lost; its legend speaks of infinite errors.

@@ -25,6 +25,8 @@ pub struct SceneChart {
     pub scene: String,
     /// Its sensors with a reference good enough to measure errors at.
     pub referenced: usize,
+    /// What the seconds of the points are: `time on 2 threads`.
+    pub timed_by: String,
     /// Seconds for loading the mesh, which no point includes.
     pub load_seconds: f64,
     /// Seconds for the BVH, which no point includes.

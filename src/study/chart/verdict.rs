@@ -13,10 +13,10 @@ const EQUAL_ERROR_SENSORS: usize = 10_000;
 /// The text of one scene: for each number of sensors the best answer within given times, from where on the path tracer is
 /// alone, and how much longer it takes for the error of the best estimate.
 pub fn verdict(chart: &SceneChart) -> String {
-    let SceneChart { scene, referenced, load_seconds, rays_seconds, .. } = chart;
+    let SceneChart { scene, referenced, timed_by, load_seconds, rays_seconds, .. } = chart;
     let mut text = format!(
-        "{scene}: errors at {referenced} referenced sensors; seconds with preparation, without loading ({load_seconds:.3} s) \
-         and BVH ({rays_seconds:.3} s)\n"
+        "{scene}: errors at {referenced} referenced sensors; seconds are {timed_by}, with preparation, without loading \
+         ({load_seconds:.3} s) and BVH ({rays_seconds:.3} s)\n"
     );
     for sensors in SENSORS {
         text += &format!("\nfor {} sensors\n", grouped(sensors));
