@@ -38,14 +38,14 @@ const MOST_LOOKS: usize = 4;
 const STEPS_BACK: u32 = 24;
 
 /// Points that are tried first, for each zone.
-const FIRST_POINTS_A_ZONE: u32 = 8;
+const FIRST_POINTS_A_ZONE: u32 = 4;
 
 /// Fewest and most of them.
 const LEAST_POINTS: u32 = 1024;
 const MOST_FIRST_POINTS: u32 = 32_768;
 
 /// Points for each line, so that areas come out better than by the lines alone.
-const POINTS_A_LINE: f64 = 1.5;
+const POINTS_A_LINE: f64 = 1.25;
 
 /// Most points that are tried on the mesh.
 const MOST_POINTS: f64 = 2e6;
@@ -196,8 +196,10 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3, met: bool) -> Option<
     let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
     let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
     for step in 0..27 {
-        let centre_m = lattice.centre_m(VoxelIndex(home + IVec3::new(step % 3, step / 3 % 3, step / 9) - 1));
-        if let Some(node) = node(centre_m).filter(|_| (centre_m - point_m).dot(normal) > 0.0) {
+        let voxel = VoxelIndex(home + IVec3::new(step % 3, step / 3 % 3, step / 9) - 1);
+        let Some(node) = model.skeleton.nearest.node(voxel) else { continue };
+        let centre_m = lattice.centre_m(voxel);
+        if (centre_m - point_m).dot(normal) > 0.0 {
             beside.push((centre_m.distance_squared(point_m), node, centre_m));
         }
     }
