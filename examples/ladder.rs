@@ -1,7 +1,8 @@
 //! How near does each quality of a method come, and what does it cost?
 //!
 //! Prints, for each scene and each rung of a method's ladder, rms factor, greatest factor, median angle and milliseconds (the
-//! shortest of five runs, given the skeleton), and how often the reference lies within once and twice the method's own error:
+//! shortest of five runs, given the skeleton), and how often the reference lies within once and twice the method's own error;
+//! where LADDER_SENSORS is set, each sensor too (reference, estimate, ratio, angle):
 //!
 //!     cargo run --release --example ladder -- diffusion scenes/gallery/gallery_r08.toml scenes/tower/tower.toml
 

@@ -41,9 +41,12 @@ pub enum Command {
     Chart {
         #[command(flatten)]
         many: Many,
-        /// No run is begun that would take longer; points beyond are scaled from fewer sensors and marked
+        /// No run of an estimate is begun that would take longer; points beyond are scaled from fewer sensors and marked
         #[arg(long, value_name = "SECONDS", default_value_t = 20.0, value_parser = seconds)]
         budget: f64,
+        /// The same for the path tracer's runs; by default as --budget
+        #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+        trace_budget: Option<f64>,
         /// A table of another program's points, as benches/peers/chart_mitsuba.py writes it; joins the scenes it names
         #[arg(long, value_name = "FILE")]
         peer: Vec<PathBuf>,

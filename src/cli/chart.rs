@@ -24,18 +24,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Runs the command.
+/// Runs the command; `budgets` are the seconds of one run of an estimate and of the path tracer.
 ///
 /// # Errors
 /// Bad input, a scene without a reference, or an interrupt.
-pub fn run(many: &Many, budget_seconds: f64, peers: &[PathBuf], cancel: &Cancel) -> Result<()> {
+pub fn run(many: &Many, budgets: [f64; 2], peers: &[PathBuf], cancel: &Cancel) -> Result<()> {
     let mut folder = Folder::new(&many.output)?;
     let peers = peer::read_all(peers)?;
     if let Some(threads) = many.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
         pool.build_global().context("the threads cannot be started")?;
     }
-    let measured = many.scenes.iter().map(|path| measure(path, many, budget_seconds, cancel));
+    let measured = many.scenes.iter().map(|path| measure(path, many, budgets, cancel));
     let mut charts = measured.collect::<Result<Vec<SceneChart>>>()?;
     for chart in &mut charts {
         chart.points.extend(peers.points_of(&chart.scene));
@@ -49,7 +49,7 @@ pub fn run(many: &Many, budget_seconds: f64, peers: &[PathBuf], cancel: &Cancel)
         tell("warning: chart.png has no text: this system has no font; chart.svg has all of it");
     }
     let text = charts.iter().map(verdict).collect::<Vec<_>>().join("\n");
-    let json = serde_json::to_string(&Charted::new(budget_seconds, &charts))?;
+    let json = serde_json::to_string(&Charted::new(budgets[0], &charts))?;
     folder.file("chart.svg", |out| out.write_all(&svg))?;
     folder.file("chart.png", |out| out.write_all(&picture.bytes))?;
     folder.file("chart.csv", |out| write_csv(out, &charts))?;
@@ -59,7 +59,12 @@ pub fn run(many: &Many, budget_seconds: f64, peers: &[PathBuf], cancel: &Cancel)
 }
 
 /// All points of one scene.
-fn measure(path: &Path, many: &Many, budget_seconds: f64, cancel: &Cancel) -> Result<SceneChart> {
+fn measure(
+    path: &Path,
+    many: &Many,
+    [budget_seconds, trace_budget_seconds]: [f64; 2],
+    cancel: &Cancel,
+) -> Result<SceneChart> {
     let stages = Stages::new(std::io::stderr().is_terminal());
     stages.begin("load", 0);
     let scene = Scene::load(path, &stages, cancel)?;
@@ -86,6 +91,7 @@ fn measure(path: &Path, many: &Many, budget_seconds: f64, cancel: &Cancel) -> Re
         rays: &rays,
         voxel_m,
         budget_seconds,
+        trace_budget_seconds,
         max_bytes: most_bytes(),
         settings: Settings { seed: many.seed.or(scene.model.seed).unwrap_or(0), ..Settings::default() },
         clock: &|| began.elapsed().as_secs_f64(),

@@ -32,7 +32,9 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
     match args.command {
         Command::Analyse { common, method } => run_analyse(&common, method, cancel),
         Command::Compare { common, methods, spp } => run_compare(&common, &methods, spp, cancel),
-        Command::Chart { many, budget, peer } => chart::run(&many, budget, &peer, cancel),
+        Command::Chart { many, budget, trace_budget, peer } => {
+            chart::run(&many, [budget, trace_budget.unwrap_or(budget)], &peer, cancel)
+        }
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
         Command::Stress(args) => stress::run(&args, cancel),
     }

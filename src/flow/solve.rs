@@ -173,8 +173,8 @@ mod tests {
         let root = 1.0 + loss / 2.0 - (loss + loss * loss / 4.0).sqrt();
         right[0] = 1.0 - root;
         let found = solve(&Symmetric::new(diagonal, &entries), &[right], 1e-13).remove(0);
-        for at in 0..40 {
-            assert!((found[at] / root.powi(at as i32) - 1.0).abs() < 1e-6, "{at}: {}", found[at]);
+        for (at, found) in (0..40).zip(found) {
+            assert!((found / root.powi(at) - 1.0).abs() < 1e-6, "{at}: {found}");
         }
     }
 

@@ -140,7 +140,7 @@ impl Sampler {
         }
     }
 
-    /// How many times as many directions a close body needs as a far one, 1 to 16: drawn by area, what is near shines by
+    /// How many times as many directions a close body needs as a far one, 1 to 64: drawn by area, what is near shines by
     /// its inverse square, so the more the larger the body is against its distance.
     pub fn nearness(&self, emitter: usize, point_m: Vec3) -> u32 {
         let Some(lamp) =
@@ -149,7 +149,7 @@ impl Sampler {
             return 1;
         };
         let reaches = lamp.reach_m * lamp.reach_m / lamp.centre_m.distance_squared(point_m.as_dvec3()).max(1e-12);
-        (4.0 * reaches).ceil().clamp(1.0, 16.0) as u32
+        (16.0 * reaches).ceil().clamp(1.0, 64.0) as u32
     }
 
     /// Draws light as emitter number `emitter` sends it out, by four numbers in [0, 1): points evenly all around, bodies

@@ -122,6 +122,28 @@ fn analyse_speaks_the_json_of_the_contract() {
 }
 
 #[test]
+fn analyse_says_what_it_chose_and_skipped_and_a_method_overrides_it() {
+    let (chosen, _) = json(&["analyse", GALLERY, "--tolerance", "2"]);
+    let choice = &chosen["choice"];
+    assert_eq!((choice["tolerance"].as_f64(), choice["voxel_m"].is_f64()), (Some(2.0), true));
+    assert!(choice["method"].as_str().unwrap().starts_with(chosen["method"].as_str().unwrap()));
+    for key in ["modelled", "skipped"] {
+        assert!(!choice[key].as_array().unwrap().is_empty(), "{key}");
+    }
+    let is_inside = choice["expected_factor"].as_f64().unwrap() <= 2.0;
+    assert_eq!(choice["inside"].as_bool(), Some(is_inside));
+    let skipped: Vec<&str> =
+        choice["skipped"].as_array().unwrap().iter().map(|skipped| skipped["what"].as_str().unwrap()).collect();
+    assert!(skipped.contains(&"backward"), "it has no error estimate of its own: {skipped:?}");
+
+    let (asked, _) = json(&["analyse", GALLERY, "--method", "backward"]);
+    assert!(asked["choice"].is_null());
+    assert_eq!(asked["method"], "backward");
+    let told = text(&run(&["analyse", GALLERY, "--tolerance", "1.000001"]).stdout);
+    assert!(told.contains("NOT inside the tolerance") && told.contains("skipped: forward"), "{told}");
+}
+
+#[test]
 fn compare_speaks_the_json_of_the_contract() {
     let output = run(&["compare", GALLERY, "--methods", "backward,forward", "--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));

@@ -1,7 +1,7 @@
 //! Where do labels stand, so that none hides a point or another label?
 
-/// Width of a character of the labels' font, as a share of its size: the mean of a plain sans-serif face.
-const CHARACTER: f64 = 0.56;
+/// Width of a character of the labels' font, as a share of its size: the mean of a bold sans-serif face.
+const CHARACTER: f64 = 0.66;
 
 /// A rectangle on the sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -23,7 +23,7 @@ const RAYS_A_BOUNCE: usize = 8192;
 const LEAST_RAYS: usize = 64;
 
 /// Rays of all emitters together that leave lamps for the sensors, the first of each emitter.
-const LAMP_RAYS: usize = 4096;
+const LAMP_RAYS: usize = 8192;
 
 /// Surfaces of glazing and walls together that a ray may meet; what is left then stays where it is.
 const MOST_SURFACES: u32 = 64;
@@ -55,6 +55,8 @@ struct Ray {
     flux_w: f64,
     bounces: u32,
     surfaces: u32,
+    /// The last node it came by.
+    node: u32,
 }
 
 /// Sends out the light of every emitter that stands in a void, in their order, `bounces` of its reflections carried by rays.
@@ -71,13 +73,14 @@ pub fn landed(model: &Model, bounces: u32, seed: u64, cancel: &Cancel) -> Result
         cancel.check()?;
         let shines = &model.shining[number / pieces];
         let mut landed = Landed::default();
-        if shines.place.is_ok() {
+        if let Ok(place) = shines.place {
             let first = number % pieces * RAYS_A_PIECE;
             for index in first..count.min(first + RAYS_A_PIECE) {
                 let lamps = if index < with_lamps { count as f64 / with_lamps as f64 } else { 0.0 };
                 let walk = Walk { model, bounces, seed: sequence_seed(seed, shines.emitter, index), lamps, with_lamps };
-                if let Some(ray) = emitted(model, shines.emitter, index, seed, shines.flux_w / count as f64) {
-                    walk.follow(ray, &mut landed);
+                let (flux_w, node) = (shines.flux_w / count as f64, place.index() as u32);
+                if let Some((origin_m, direction)) = emitted(model, shines.emitter, index, seed) {
+                    walk.follow(Ray { origin_m, direction, flux_w, bounces: 0, surfaces: 0, node }, &mut landed);
                 }
             }
         }
@@ -93,13 +96,13 @@ fn sequence_seed(seed: u64, emitter: usize, index: usize) -> u64 {
     sequence::offset(seed, (emitter as u64) << 32 | index as u64)[0].to_bits()
 }
 
-/// Ray number `index` of an emitter.
-fn emitted(model: &Model, emitter: usize, index: usize, seed: u64, flux_w: f64) -> Option<Ray> {
+/// Where ray number `index` of an emitter starts, and where it goes.
+fn emitted(model: &Model, emitter: usize, index: usize, seed: u64) -> Option<(Vec3, Vec3)> {
     let [a, b] = [0, 1].map(|half| sequence::offset(seed, !(2 * emitter as u64 + half)));
     let offset = [a[0], a[1], b[0], b[1]];
     let random = [0, 1, 2, 3].map(|axis| (offset[axis] + R4[axis] * (index as f64 + 0.5)).fract());
     let leaves = model.sampler.emit(emitter, random)?;
-    Some(Ray { origin_m: leaves.origin_m, direction: leaves.direction, flux_w, bounces: 0, surfaces: 0 })
+    Some((leaves.origin_m, leaves.direction))
 }
 
 /// How one ray goes on.
@@ -142,7 +145,9 @@ impl Walk<'_> {
                 continue;
             }
             let origin_m = at_m + lift_m * facing;
-            let node = node_before(self.model, at_m, facing, -ray.direction, hit.distance_m);
+            // In a corner there may be no void before the wall: then the light stays where it came from.
+            let before = node_before(self.model, at_m, facing, -ray.direction, hit.distance_m);
+            let node = before.unwrap_or(ray.node);
             if ray.bounces < self.bounces && surfaces < MOST_SURFACES {
                 if self.lamps > 0.0 {
                     let distance_m = f64::from(hit.distance_m);
@@ -152,17 +157,14 @@ impl Walk<'_> {
                         normal: facing,
                         flux_w: reflected_w * self.lamps,
                         radius_squared_m2: 4.0 * distance_m * distance_m / (slant * self.with_lamps as f64),
-                        cell: node.and_then(|node| nodes.get(node as usize)).map_or(u32::MAX, |node| node.weight.cell),
+                        cell: nodes.get(node as usize).map_or(u32::MAX, |node| node.weight.cell),
                     });
                 }
                 let direction = sequence::cosine_about(facing, sequence::offset(self.seed, draws));
                 draws += 1;
-                open.push(Ray { origin_m, direction, flux_w: reflected_w, bounces: ray.bounces + 1, surfaces });
-            } else if let Some(node) = node {
-                landed.sources.push((node, reflected_w));
+                open.push(Ray { origin_m, direction, flux_w: reflected_w, bounces: ray.bounces + 1, surfaces, node });
             } else {
-                // Outside the void that was modelled there is nothing it could light.
-                landed.absorbed_w += reflected_w;
+                landed.sources.push((node, reflected_w));
             }
         }
     }

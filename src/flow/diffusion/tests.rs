@@ -3,9 +3,11 @@
 use super::*;
 use crate::flow::tests::{FLUX_W, field, lamp, model_of, modelled, room, sensor, two_rooms};
 use crate::job::Quiet;
+use crate::light::Status;
 use crate::scene::{Light, Material, Scene, Sensor};
 use crate::voxel::test_scenes::{boxed, scene_of};
 use glam::Vec3;
+use petgraph::graph::NodeIndex;
 
 const LIGHT_M: Vec3 = Vec3::new(1.0, 1.4, 1.5);
 
@@ -26,7 +28,7 @@ fn glazed(transmittance: f32) -> Scene {
     scene
 }
 
-fn circuit(model: &Model) -> Circuit {
+fn circuit(model: &Model) -> Circuit<'_> {
     Circuit::new(model, &Surroundings::of(model))
 }
 
@@ -44,8 +46,8 @@ fn what_is_absorbed_and_escapes_is_what_was_emitted() {
             let landed = photons::landed(&model, bounces, 0, &Cancel::new()).unwrap();
             for (landed, light) in landed.iter().zip(&model.shining) {
                 let sources_w = sources_w(&circuit, std::slice::from_ref(landed));
-                let spread = circuit.spread(&model.skeleton, &sources_w);
-                let (absorbed_w, escaped_w) = circuit.losses_w(&sources_w, &spread.potentials_w_m2);
+                let spread = circuit.spread(&sources_w);
+                let (absorbed_w, escaped_w) = circuit.losses_w(&sources_w, &spread);
                 let all_w = absorbed_w + escaped_w + landed.absorbed_w + landed.escaped_w;
                 assert!((all_w / light.flux_w - 1.0).abs() < 1e-6, "{all_w} of {}, {bounces} bounces", light.flux_w);
             }
@@ -85,7 +87,7 @@ fn along_a_duct_light_falls_as_the_difference_equation_says() {
     order.sort_by(|a, b| along(*a).total_cmp(&along(*b)));
     let mut sources_w = vec![0.0; order.len()];
     sources_w[order[0]] = 1.0;
-    let potentials = circuit.spread(&model.skeleton, &sources_w).potentials_w_m2;
+    let potentials = circuit.spread(&sources_w).hops_w_m2;
 
     // Conductance A lambda g / 3 h against the walls' h P alpha g / (4 rho), lambda = 4 A / P = the side.
     let (step_m, decay_m) = (0.1, side_m * (reflectance / (3.0 * (1.0 - reflectance))).sqrt());
@@ -117,7 +119,7 @@ fn a_room_behind_a_small_opening_gets_what_comes_through_it() {
     let model = model_of(&scene);
     let circuit = circuit(&model);
     let landed = photons::landed(&model, 0, 0, &Cancel::new()).unwrap();
-    let spread = circuit.spread(&model.skeleton, &sources_w(&circuit, &landed));
+    let spread = circuit.spread(&sources_w(&circuit, &landed));
     let node = |x: f32| model.place(Vec3::new(x, 0.4, 0.4), None).unwrap().index();
     let [lit, dark] = [0.4, 5.6].map(|x| spread.potentials_w_m2[node(x)]);
     // The hole is Lambertian: what enters, a M, is what walls and hole take, (alpha S + a) E, M = E / rho beyond, rho E here.
@@ -139,6 +141,8 @@ fn the_extremes_give_numbers_and_say_what_they_are() {
                 assert!(reading.value_w_m2.is_finite() && reading.value_w_m2 > 0.0, "{reflectance}: {reading:?}");
                 assert!(reading.error_w_m2.is_some_and(f64::is_finite) && reading.flux_w_m2.is_finite());
             }
+            let plane = field.readings[1];
+            assert!((plane.flux_w_m2.z / plane.value_w_m2 - 1.0).abs() < 1e-5, "{plane:?}");
             let told = field.warnings.iter().any(|warning| warning.contains(says) && !says.is_empty());
             assert_eq!(told, !says.is_empty(), "{reflectance}: {:?}", field.warnings);
             if reflectance == 0.0 {

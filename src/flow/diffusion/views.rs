@@ -23,6 +23,10 @@ const CORNERS: usize = 5;
 /// How far from the centre towards the outline the look goes: half of a triangle lies within 0.7 of its height.
 const INWARDS: f32 = 0.7;
 
+/// A point beyond the plane of an opening stands in it if the opening fills this much of its view; else it is somewhere in a
+/// room that bends around, and sees the opening from behind.
+const LEAST_PASSED_SR: f64 = PI;
+
 /// An opening as a point sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
@@ -56,10 +60,10 @@ pub fn view(model: &Model, neck: &Neck, side: usize, point_m: Vec3) -> Option<Vi
             flux += share * 0.5 * [(centre, *a), (*a, *b), (*b, centre)].map(|(a, b)| turn(a, b)).iter().sum::<DVec3>();
         }
     }
-    if solid_angle_sr == 0.0 {
+    let passed = outwards.dot((neck.position_m - point_m).as_dvec3()) < 0.0;
+    if solid_angle_sr == 0.0 || passed && solid_angle_sr.abs() < LEAST_PASSED_SR {
         return None;
     }
-    let passed = outwards.dot((neck.position_m - point_m).as_dvec3()) < 0.0;
     let flux = if flux.dot(outwards) < 0.0 { -flux } else { flux };
     let solid_angle_sr = solid_angle_sr.abs();
     Some(View { solid_angle_sr: if passed { 4.0 * PI - solid_angle_sr } else { solid_angle_sr }, flux })

@@ -5,7 +5,7 @@
 //! a light's photons carry onto walls is exact in the sum, all its flux less what escapes, and the two together are held to
 //! it.
 
-use super::patches::Start;
+use super::patches::{Patch, Start};
 use super::walk::{End, walk};
 use super::{Grounds, Quality};
 use crate::flow::sequence;
@@ -44,16 +44,28 @@ struct Portion {
     passes: f32,
 }
 
-/// Where the light of one emitter lands.
-pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, seed: u64) -> Landing {
+/// What all lights together promise each patch: the sum of their flux over squared distance, W/m2.
+pub fn promised(grounds: &Grounds) -> Vec<f64> {
+    let lamps = &grounds.model.shining;
+    let of_patch = |patch: &Patch| lamps.iter().map(|shining| promise(grounds, patch, shining)).sum();
+    grounds.patches.list.par_iter().map(of_patch).collect()
+}
+
+/// Where the light of one emitter lands; `promised` as [`promised`] gives it.
+pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, promised: &[f64], seed: u64) -> Landing {
     let patches = grounds.patches.list.len();
     let mut landing = Landing { flux_w: vec![0.0; patches], reflected_w: vec![0.0; patches], lost_w: 0.0 };
     if shining.place.is_err() || shining.flux_w <= 0.0 {
         return landing;
     }
-    let lamps = grounds.model.shining.len() as u32;
-    let photons = (quality.photons / lamps.max(1)).max(LEAST_PHOTONS);
-    let shadows = |patch: usize| shadow_rays(grounds, quality, shining, patch);
+    let lamps = grounds.model.shining.len();
+    let shine = grounds.model.shining.iter().filter(|shining| shining.flux_w > 0.0).count() as u32;
+    let photons = (quality.photons / shine.max(1)).max(LEAST_PHOTONS);
+    let shadows = |number: usize| {
+        let patch = &grounds.patches.list[number];
+        let most = f64::from((patch.starts.len() as u32).min(quality.shadow_rays));
+        (most * (2.0 * promise(grounds, patch, shining) / promised[number]).min(1.0)).round() as u32
+    };
     let shadows_per_m2 = |patch: usize| f64::from(shadows(patch)) / grounds.patches.list[patch].area_m2;
     // The density of both ways together, per m2, where the unshadowed irradiance is that.
     let share = f64::from(photons) / shining.flux_w;
@@ -70,7 +82,7 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, seed: u6
         .into_par_iter()
         .with_min_len(16)
         .map(|patch| {
-            let offset = sequence::offset(seed, SHADOW_OFFSETS + (patch * lamps as usize + shining.emitter) as u64);
+            let offset = sequence::offset(seed, SHADOW_OFFSETS + (patch * lamps + shining.emitter) as u64);
             let starts = &grounds.patches.starts[grounds.patches.list[patch].starts.clone()];
             let count = shadows(patch);
             let shadow = |ray: u32| {
@@ -103,20 +115,12 @@ pub fn landing(grounds: &Grounds, quality: &Quality, shining: &Shining, seed: u6
     landing
 }
 
-/// How many shadow rays go from a patch to a light: of all that the patch has, the light's share by flux over squared
-/// distance, whatever lies between. A light that gets none is left to its photons.
-fn shadow_rays(grounds: &Grounds, quality: &Quality, shining: &Shining, patch: usize) -> u32 {
-    let patch = &grounds.patches.list[patch];
-    let starts = patch.starts.len() as u32;
-    let Some(start) = grounds.patches.starts.get(patch.starts.start) else { return 0 };
-    let nearest_m2 = patch.area_m2.max(f64::MIN_POSITIVE);
-    let promise = |shining: &Shining| {
-        let squared_m2 = f64::from(start.position_m.distance_squared(shining.position_m));
-        shining.flux_w / squared_m2.max(nearest_m2)
-    };
-    let all: f64 = grounds.model.shining.iter().map(promise).sum();
-    let most = f64::from(starts.min(quality.shadow_rays));
-    (most * (2.0 * promise(shining) / all).min(1.0)).round() as u32
+/// What a light may bring to a patch, whatever lies between: its flux over the squared distance, W/m2. Each patch shares its
+/// shadow rays among the lights by this; a light that gets none is left to its photons.
+fn promise(grounds: &Grounds, patch: &Patch, shining: &Shining) -> f64 {
+    let Some(start) = grounds.patches.starts.get(patch.starts.start) else { return 0.0 };
+    let squared_m2 = f64::from(start.position_m.distance_squared(shining.position_m));
+    shining.flux_w / squared_m2.max(patch.area_m2).max(f64::MIN_POSITIVE)
 }
 
 /// What one photon leaves on the patches it meets, and the share of it that is lost.

@@ -237,8 +237,9 @@ impl<'a> Network<'a> {
         cancel.check()?;
 
         progress.begin("landing", 0);
-        let landings: Vec<Landing> =
-            model.shining.iter().map(|shining| landing(&grounds, quality, shining, settings.seed)).collect();
+        let promised = landing::promised(&grounds);
+        let of = |shining| landing(&grounds, quality, shining, &promised, settings.seed);
+        let landings: Vec<Landing> = model.shining.iter().map(of).collect();
         progress.end();
         cancel.check()?;
 

@@ -1,7 +1,7 @@
 //! Which pieces of wall exchange light?
 //!
 //! A patch is what one zone sees in one direction: all walls in it whose normals have the same dominant axis and sign, panes
-//! apart from what is opaque. Areas, normals and reflectances are the mesh's own, by points spread evenly over it: a point
+//! and black walls apart. Areas, normals and reflectances are the mesh's own, by points spread evenly over it: a point
 //! stands for the same area everywhere. A side of a wall belongs to the void that begins in front of it.
 //!
 //! Limits: crevices that the voxels close have no zone; what is in them is taken to be where the void ends before them.
@@ -15,8 +15,8 @@ use crate::space::VoxelIndex;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 
-/// Orientations of opaque walls, then of panes.
-const KINDS: usize = 12;
+/// Orientations of walls that reflect, then of panes, then of black ones.
+const KINDS: usize = 18;
 
 /// No patch.
 const NONE: u32 = u32::MAX;
@@ -34,11 +34,18 @@ const MOST_LOOKS: usize = 4;
 /// Back along a ray the void is looked for in steps of half a voxel, this many.
 const STEPS_BACK: u32 = 24;
 
-/// A zone is seen to have about this many patches; decides only how many points are tried.
-const PATCHES_A_ZONE: f32 = 2.5;
+/// Points that are tried first, for each zone.
+const FIRST_POINTS_A_ZONE: u32 = 8;
+
+/// Fewest and most of them.
+const LEAST_POINTS: u32 = 1024;
+const MOST_FIRST_POINTS: u32 = 32_768;
+
+/// Points for each line, so that areas come out better than by the lines alone.
+const POINTS_A_LINE: f64 = 1.5;
 
 /// Most points that are tried on the mesh.
-const MOST_POINTS: f64 = 4e6;
+const MOST_POINTS: f64 = 2e6;
 
 /// One side of walls in one zone.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,15 +87,18 @@ pub struct Patches {
 impl Patches {
     /// The patches of the zones of a model, with about [`Quality::lines`] starts each. Linear in the starts.
     pub fn new(model: &Model, zones: &Zones, quality: &Quality, seed: u64) -> Self {
-        let wanted = f64::from(PATCHES_A_ZONE * quality.lines as f32) * zones.count as f64;
-        let mut tried = wanted.clamp(1024.0, MOST_POINTS).ceil();
-        let mut found = points(model, zones, tried as u32, seed);
-        // Where most of the mesh faces no void of ours, as outside of a house, more points are tried.
-        if (found.len() as f64) < 0.5 * wanted && !found.is_empty() {
-            tried = (tried * wanted / found.len() as f64).min(MOST_POINTS).ceil();
-            found = points(model, zones, tried as u32, seed);
+        // A few points tell how many patches there are and how much of the mesh faces the void.
+        let mut tried = FIRST_POINTS_A_ZONE.saturating_mul(zones.count as u32).clamp(LEAST_POINTS, MOST_FIRST_POINTS);
+        let mut found = points(model, zones, tried, seed);
+        let mut kinds: Vec<u32> = found.iter().map(|(kind, _)| *kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let wanted = POINTS_A_LINE * f64::from(quality.lines) * kinds.len() as f64;
+        if (found.len() as f64) < wanted {
+            tried = (f64::from(tried) * wanted / found.len() as f64).min(MOST_POINTS).ceil() as u32;
+            found = points(model, zones, tried, seed);
         }
-        let point_m2 = model.walls.area_m2() / tried;
+        let point_m2 = model.walls.area_m2() / f64::from(tried);
 
         found.sort_by_key(|(kind, _)| *kind);
         let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
@@ -134,13 +144,17 @@ impl Patches {
         }
     }
 
+    /// The patch of a zone that is like a wall of that normal and answer; another of the zone's where it has none.
+    pub fn like(&self, zone: u32, normal: Vec3, answer: Answer) -> Option<u32> {
+        self.of_kind.get(kind(zone, normal, answer) as usize).copied().filter(|&patch| patch != NONE)
+    }
+
     /// The patch of a point on a wall, its normal on the side that was hit, by a ray of that length that came
     /// along `direction`. `None` where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
         let node = before_wall(model, hit.position_m, hit.normal)
             .or_else(|| back_along(model, hit.position_m, direction, length_m))?;
-        let kind = kind(zones.at(node, hit.position_m), hit.normal, hit.answer);
-        self.of_kind.get(kind as usize).copied().filter(|&patch| patch != NONE)
+        self.like(zones.at(node, hit.position_m), hit.normal, hit.answer)
     }
 }
 
@@ -172,9 +186,9 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<u32> {
         let at_m = point_m + normal * (out * lattice.voxel_m);
         Some((node(at_m)?, at_m))
     });
-    // The void behind a thin wall is not before its inner side.
-    if let Some((node, _)) = straight.filter(|(_, at_m)| model.rays.clear(lifted_m, *at_m)) {
-        return Some(node);
+    if let Some((node, at_m)) = straight {
+        // The void behind a thin wall is not before its inner side.
+        return model.rays.clear(lifted_m, at_m).then_some(node);
     }
     let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
     let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
@@ -203,5 +217,10 @@ fn back_along(model: &Model, point_m: Vec3, direction: Vec3, length_m: f32) -> O
 fn kind(zone: u32, normal: Vec3, answer: Answer) -> u32 {
     let axis = normal.abs().max_position();
     let side = 2 * axis + usize::from(normal[axis] < 0.0);
-    KINDS as u32 * zone + (side + if answer.passes > 0.0 { 6 } else { 0 }) as u32
+    let matter = match answer {
+        Answer { passes, .. } if passes > 0.0 => 6,
+        Answer { reflects, .. } if reflects > 0.0 => 0,
+        _ => 12,
+    };
+    KINDS as u32 * zone + (side + matter) as u32
 }

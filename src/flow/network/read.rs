@@ -12,7 +12,6 @@
 
 use super::Network;
 use super::lines::Line;
-use super::patches::Start;
 use super::walk::End;
 use crate::flow::direct::direct;
 use crate::flow::sequence;
@@ -35,6 +34,9 @@ const REACH_ZONES: f32 = 1.6;
 
 /// A sensor this near to a wall, in voxels, lies on it.
 const ON_WALL_VOXELS: f32 = 0.25;
+
+/// A wall of this cosine to a sensor's normal is parallel to it.
+const PARALLEL_FROM: f32 = 0.9;
 
 /// Shadow rays from a probe to a light that has a body.
 const DIRECT_RAYS: u32 = 8;
@@ -144,9 +146,10 @@ impl Tracks {
         shares.into_iter().map(|(zone, share)| (zone, share / sum)).collect()
     }
 
-    /// The scalar irradiance of a column at a place, as a geometric mean: light falls off by factors.
-    fn scalar_w_m2(&self, column: usize, around: &[(usize, f64)]) -> f64 {
-        let values = || around.iter().map(|&(zone, share)| (self.scalar_w_m2[column][zone], share));
+    /// The scalar irradiance of some columns together at a place, as a geometric mean: light falls off by factors.
+    fn scalar_w_m2(&self, columns: std::ops::Range<usize>, around: &[(usize, f64)]) -> f64 {
+        let of_zone = |zone: usize| self.scalar_w_m2[columns.clone()].iter().map(|column| column[zone]).sum::<f64>();
+        let values = || around.iter().map(|&(zone, share)| (of_zone(zone), share));
         if values().any(|(value, _)| value <= 0.0) {
             return values().map(|(value, share)| value * share).sum();
         }
@@ -255,9 +258,7 @@ fn at_probe(
     let zone = grounds.zones.at(node.index() as u32, probe.position_m);
     let around = tracks.around(zone, probe.position_m);
     let columns = network.reflected_w_m2.len();
-    let scalar_w_m2: Vec<f64> =
-        (0..tracks.scalar_w_m2.len()).map(|column| tracks.scalar_w_m2(column, &around)).collect();
-    let all_w_m2: f64 = scalar_w_m2[..columns].iter().sum();
+    let all_w_m2 = tracks.scalar_w_m2(0..columns, &around);
     // The mean of the fluxes' shares of the scalar irradiance, so that it follows the geometric mean.
     let share = |zone: usize| {
         let scalar_w_m2: f64 = tracks.scalar_w_m2[..columns].iter().map(|column| column[zone]).sum();
@@ -266,13 +267,13 @@ fn at_probe(
     let diffuse_w_m2 = all_w_m2 * around.iter().map(|&(zone, part)| part * share(zone)).sum::<DVec3>();
 
     // What the diffuse field is worth to this probe, as a factor on the scalar irradiance.
-    let on_wall = probe.normal.and_then(|normal| wall_at(network, probe.position_m, normal));
+    let on_wall = probe.normal.and_then(|normal| on_wall_w_m2(network, &around, probe.position_m, normal));
     let (worth, hemisphere_w_m2) = match probe.normal {
         None => (1.0, diffuse_w_m2),
         Some(normal) => {
             let normal = normal.as_dvec3();
             let planar_w_m2 = match on_wall {
-                Some(patch) => network.reflected_w_m2.iter().map(|column| column[patch as usize]).sum(),
+                Some(irradiance_w_m2) => irradiance_w_m2,
                 None => (all_w_m2 / 4.0 + diffuse_w_m2.dot(normal) / 2.0).max(0.0),
             };
             // The flux over the hemisphere: its normal part is the irradiance, across it half of the whole.
@@ -283,9 +284,15 @@ fn at_probe(
     value_w_m2 += worth * all_w_m2;
     flux_w_m2 += hemisphere_w_m2;
     if columns == lamps {
-        row.iter_mut().zip(&scalar_w_m2).for_each(|(part, scalar_w_m2)| *part += worth * scalar_w_m2);
+        // What the mean makes of all together, each column has its part of by the plain mean.
+        let plain =
+            |column: usize| around.iter().map(|&(zone, part)| part * tracks.scalar_w_m2[column][zone]).sum::<f64>();
+        let sum: f64 = (0..columns).map(plain).sum();
+        let factor = if sum > 0.0 { worth * all_w_m2 / sum } else { 0.0 };
+        row.iter_mut().enumerate().for_each(|(column, part)| *part += factor * plain(column));
     }
-    let [odd, even, coarse] = [0, 1, 2].map(|variant| scalar_w_m2.get(columns + variant).copied().unwrap_or(all_w_m2));
+    let [odd, even, coarse] =
+        [0, 1, 2].map(|variant| tracks.scalar_w_m2(columns + variant..columns + variant + 1, &around));
     let spread =
         around.iter().map(|&(zone, _)| tracks.scalar_w_m2[..columns].iter().map(|column| column[zone]).sum::<f64>());
     let spread = spread.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
@@ -296,16 +303,26 @@ fn at_probe(
     (Reading { value_w_m2, flux_w_m2, error_w_m2: Some(error), status }, row)
 }
 
-/// The patch of the wall that a sensor lies on.
-fn wall_at(network: &Network, position_m: Vec3, normal: Vec3) -> Option<u32> {
+/// The irradiance by reflected light on the wall that a sensor lies on, W/m2, as the mean of that of walls like it in the
+/// zones around; `None` for a sensor in the open.
+fn on_wall_w_m2(network: &Network, around: &[(usize, f64)], position_m: Vec3, normal: Vec3) -> Option<f64> {
     let grounds = &network.grounds;
     let rays = &grounds.model.rays;
     let reach_m = ON_WALL_VOXELS * grounds.model.voxels.lattice.voxel_m;
     let hit = rays.closest(position_m + normal * rays.epsilon_m(), -normal, reach_m)?;
-    if hit.facing().dot(normal) < 0.9 {
+    if hit.facing().dot(normal) < PARALLEL_FROM {
         return None;
     }
     let answer = grounds.model.walls.answer(hit.surface);
-    let at = Start { position_m: position_m - normal * hit.distance_m, normal: hit.facing(), answer };
-    grounds.patch_at(&at, -normal, hit.distance_m)
+    let (mut sum_w_m2, mut sum) = (0.0, 0.0);
+    for &(zone, share) in around {
+        let Some(number) = grounds.patches.like(zone as u32, hit.facing(), answer) else { continue };
+        let Some(patch) = grounds.patches.list.get(number as usize) else { continue };
+        let start = grounds.patches.starts.get(patch.starts.start);
+        if start.is_some_and(|start| start.normal.dot(normal) > PARALLEL_FROM) {
+            sum_w_m2 += share * network.reflected_w_m2.iter().map(|column| column[number as usize]).sum::<f64>();
+            sum += share;
+        }
+    }
+    (sum > 0.0).then(|| sum_w_m2 / sum)
 }

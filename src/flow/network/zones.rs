@@ -57,7 +57,9 @@ impl Zones {
         let lattice = &model.voxels.lattice;
         let mut count = 0;
         let groups = boxes.iter().zip(widths_m.iter().zip(&cells)).map(|(&(low, high), (&width_m, &cell))| {
-            let size_m = high.saturating_sub(low).max(IVec3::ZERO).as_vec3() * lattice.voxel_m;
+            // A group whose nodes are nearest to no voxel has an empty box.
+            let (low, high) = if low.cmplt(high).all() { (low, high) } else { (IVec3::ZERO, IVec3::ONE) };
+            let size_m = (high - low).as_vec3() * lattice.voxel_m;
             let blocks = (size_m / (spacing * width_m)).round().clamp(Vec3::ONE, Vec3::splat(MOST_BLOCKS));
             let group = Group {
                 first: count,

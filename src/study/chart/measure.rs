@@ -37,8 +37,10 @@ pub struct Measurement<'a> {
     pub rays: &'a Arc<Rays>,
     /// The scene's own voxel size, metres; it is measured at twice and half of it too.
     pub voxel_m: f32,
-    /// No run is begun that would exceed so many seconds.
+    /// No run of an estimate is begun that would exceed so many seconds.
     pub budget_seconds: f64,
+    /// The same for a run of the path tracer.
+    pub trace_budget_seconds: f64,
     /// The most memory that voxels and skeleton may take.
     pub max_bytes: u64,
     /// The seed; all else is set by the qualities.
@@ -147,10 +149,10 @@ impl Measurement<'_> {
         let sources = Sources::of(self.scene);
         let mut seconds_a_sample = 0.0;
         for samples in SAMPLES {
-            if seconds_a_sample * f64::from(samples) > self.budget_seconds {
+            if seconds_a_sample * f64::from(samples) > self.trace_budget_seconds {
                 chart
                     .notes
-                    .push(format!("the path tracer ends before {samples} samples, which would exceed the budget"));
+                    .push(format!("the path tracer ends before {samples} samples, which would exceed its budget"));
                 break;
             }
             progress.begin(&format!("trace {samples} samples"), 0);

@@ -87,6 +87,7 @@ impl Search<'_> {
             }
             let Some(fine) = next else {
                 modelled.extend(quality.modelled);
+                skipped.push(sky(&model));
                 let method = rungs[quality.rung].label();
                 let choice = Choice { tolerance, voxel_m, method, expected_factor, modelled, skipped };
                 return Ok(Some(Chosen { model, rung: quality.rung, field: quality.field, choice }));
@@ -158,6 +159,14 @@ impl Search<'_> {
     }
 }
 
+/// Why no light comes from the sky.
+fn sky(model: &Model) -> Skipped {
+    let is_open = model.voxels.voids.iter().any(|part| part.leaks);
+    let why =
+        if is_open { "the void is open to it, but no method here takes light from it" } else { "the void is sealed" };
+    Skipped { what: "sky".to_owned(), why: why.to_owned() }
+}
+
 /// The model of voxels half as large; `None` where it would not fit.
 fn half_as_large(model: &Model, build: &dyn Fn(f32) -> Result<Model, ModelError>) -> Result<Option<Model>, ModelError> {
     if 8 * model.voxels.lattice.voxels() > MOST_VOXELS {
@@ -181,4 +190,89 @@ pub struct Quality {
     pub modelled: Vec<String>,
     /// What was not chosen, and why.
     pub skipped: Vec<Skipped>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::tests::{FLUX_W, lamp, model_of, modelled, room, sensor};
+    use crate::job::Quiet;
+    use crate::light::{Reading, Status};
+    use crate::scene::Method;
+    use glam::{DVec3, Vec3};
+    use std::cell::RefCell;
+    use std::sync::Arc;
+
+    /// A quality that answers `value` times (1 + `per_metre` x voxel edge), off by `error` of it by its own estimate.
+    fn rung(quality: &str, value: f64, error: Option<f64>, per_metre: f64) -> Rung {
+        let estimate = move |model: &Model, probes: &[Probe], _: &Settings, _: &dyn Progress, _: &Cancel| {
+            let value_w_m2 = value * (1.0 + per_metre * f64::from(model.voxels.lattice.voxel_m));
+            let error_w_m2 = error.map(|error| error * value_w_m2);
+            let reading = Reading { value_w_m2, flux_w_m2: DVec3::ZERO, error_w_m2, status: Status::Ok };
+            Ok(Field { readings: vec![reading; probes.len()], ..Field::default() })
+        };
+        Rung { method: Method::Forward, quality: quality.to_owned(), estimate: Box::new(estimate) }
+    }
+
+    /// What is chosen, at which voxel edge, the factor expected, and the voxel edges that had to be made for it.
+    fn chosen(rungs: &[Rung], tolerance: f64, has_finer: bool) -> (String, f32, Option<f64>, Vec<f32>) {
+        let lights = vec![lamp(Vec3::splat(1.5), FLUX_W)];
+        let (scene, model) = modelled(&room(), lights, vec![sensor(Vec3::splat(1.0), None)]);
+        let made = RefCell::new(Vec::new());
+        let rays = Arc::clone(&model.rays);
+        let build = |voxel_m: f32| {
+            made.borrow_mut().push(voxel_m);
+            Model::build(&scene, rays.clone(), voxel_m, u64::MAX, &Quiet, &Cancel::new())
+        };
+        let finer = has_finer.then(|| {
+            Model::build(&scene, rays.clone(), model.voxels.lattice.voxel_m / 2.0, u64::MAX, &Quiet, &Cancel::new())
+                .unwrap()
+        });
+        let settings = Settings::default();
+        let probes = |model: &Model| model.probes_at_sensors(&scene);
+        let search = Search { rungs, tolerance, settings: &settings, probes: &probes, build: &build };
+        let model = model_of(&scene);
+        let found = search.run(model, finer, "asked".to_owned(), &Quiet, &Cancel::new()).unwrap().unwrap();
+        let choice = found.choice;
+        assert_eq!(choice.method, rungs[found.rung].label());
+        assert_eq!(choice.voxel_m, found.model.voxels.lattice.voxel_m);
+        (choice.method, choice.voxel_m, choice.expected_factor, made.into_inner())
+    }
+
+    #[test]
+    fn the_cheapest_quality_that_agrees_with_the_next_is_chosen() {
+        let rungs = || {
+            vec![
+                rung("silent", 1.0, None, 0.0),
+                rung("rough", 2.0, Some(0.1), 0.0),
+                rung("fair", 1.1, Some(0.1), 0.0),
+                rung("fine", 1.0, Some(0.02), 0.0),
+            ]
+        };
+        for (tolerance, want) in [(1.01, "fine"), (1.05, "fine"), (1.3, "fair"), (1.5, "fair"), (4.0, "rough")] {
+            let (method, _, expected, made) = chosen(&rungs(), tolerance, false);
+            assert_eq!(method, format!("forward {want}"), "{tolerance}");
+            assert_eq!(
+                expected.is_some_and(|factor| factor <= tolerance),
+                tolerance > 1.01,
+                "{tolerance}: {expected:?}"
+            );
+            assert!(made.is_empty());
+        }
+        let (method, _, expected, _) = chosen(&rungs()[..1], 2.0, false);
+        assert_eq!((method.as_str(), expected), ("forward silent", None));
+    }
+
+    #[test]
+    fn voxels_are_halved_until_answers_agree_and_no_further() {
+        // 0.1 m: 2, 0.05 m: 1.5, 0.025 m: 1.25.
+        let rungs = [rung("only", 1.0, Some(0.01), 10.0)];
+        for (tolerance, want_m, made_wanted) in
+            [(2.0, 0.1, vec![]), (1.5, 0.05, vec![0.025]), (1.01, 0.025, vec![0.025, 0.0125])]
+        {
+            let (_, voxel_m, expected, made) = chosen(&rungs, tolerance, true);
+            assert_eq!((voxel_m, made), (want_m, made_wanted), "{tolerance}");
+            assert_eq!(expected.is_some_and(|factor| factor <= tolerance), tolerance > 1.01);
+        }
+    }
 }

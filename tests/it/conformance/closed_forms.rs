@@ -17,10 +17,10 @@ pub struct Allowed {
 
 impl Allowed {
     pub fn of(&self, method: Method) -> f64 {
-        match method.name() {
-            "trace" => self.control,
-            "diffusion" => self.diffusion,
-            _ => self.other,
+        match method {
+            Method::Trace => self.control,
+            Method::Diffusion => self.diffusion,
+            Method::Backward | Method::Forward | Method::Network => self.other,
         }
     }
 }

@@ -1,50 +1,57 @@
 //! Which method does not obey which law, by design, and why.
 
-/// Names of methods; those of methods that the ladder does not have are not asked for.
-const BACKWARD: &str = "backward";
-const FORWARD: &str = "forward";
-const DIFFUSION: &str = "diffusion";
-const TRACE: &str = "trace";
+use lightvein::scene::Method::{self, Backward, Diffusion, Forward, Trace};
 
 const NO_REFLECTANCE: &str = "the poster's heuristics do not know reflectance: what walls send back is no part of them";
 const POINT_LIKE: &str = "the poster's heuristics read every light as a point that shines evenly all around";
 
 /// Law, method, reason. A method that obeys after all fails: exceptions do not outlive their reason.
-pub const EXCEPTIONS: &[(&str, &str, &str)] = &[
-    ("shares sum to the value", BACKWARD, "it adds lights up as it goes and does not tell them apart"),
-    ("shares sum to the value", FORWARD, "it adds lights up as it goes and does not tell them apart"),
-    ("shares sum to the value", TRACE, "the truth is one sum"),
-    ("nothing outshines the light", BACKWARD, POINT_LIKE),
-    ("nothing outshines the light", FORWARD, POINT_LIKE),
+pub const EXCEPTIONS: &[(&str, Method, &str)] = &[
+    ("shares sum to the value", Backward, "it adds lights up as it goes and does not tell them apart"),
+    ("shares sum to the value", Forward, "it adds lights up as it goes and does not tell them apart"),
+    ("shares sum to the value", Trace, "the truth is one sum"),
+    ("nothing outshines the light", Backward, POINT_LIKE),
+    ("nothing outshines the light", Forward, POINT_LIKE),
+    (
+        "nothing outshines the light",
+        Diffusion,
+        "the reflected part of a room of few nodes cannot fall off towards a lamp, which is black to it",
+    ),
+    (
+        "nothing outshines the light",
+        DIFFUSION,
+        "its diffuse light has one value across a room, which one black wall among white ones makes uneven",
+    ),
     (
         "statuses",
-        TRACE,
+        Trace,
         "it knows neither void nor matter: what gets no light is dark, a sensor in matter sees its inside",
     ),
-    ("no light", TRACE, "it knows no void that could be unreached"),
-    ("glazing", FORWARD, "it carries flux along the skeleton, where glazing takes no share"),
-    ("black is direct", BACKWARD, NO_REFLECTANCE),
-    ("black is direct", FORWARD, NO_REFLECTANCE),
-    ("monotone", BACKWARD, NO_REFLECTANCE),
-    ("monotone", FORWARD, NO_REFLECTANCE),
-    ("white", BACKWARD, "without reflectance there is nothing to warn of"),
-    ("white", FORWARD, "without reflectance there is nothing to warn of"),
-    ("white", TRACE, "roulette ends its paths, and its warnings are of samples"),
-    ("furnace", BACKWARD, NO_REFLECTANCE),
-    ("furnace", FORWARD, NO_REFLECTANCE),
-    ("coupled spheres", BACKWARD, NO_REFLECTANCE),
-    ("coupled spheres", FORWARD, NO_REFLECTANCE),
-    ("bright tube", BACKWARD, NO_REFLECTANCE),
-    ("bright tube", FORWARD, NO_REFLECTANCE),
-    ("grey tube", BACKWARD, NO_REFLECTANCE),
-    ("grey tube", FORWARD, NO_REFLECTANCE),
-    ("candid", BACKWARD, "that it knows no reflectance is what it is, not a state that a run could be in"),
-    ("candid", FORWARD, "that it knows no reflectance is what it is, not a state that a run could be in"),
-    ("truth", BACKWARD, NO_REFLECTANCE),
-    ("truth", FORWARD, NO_REFLECTANCE),
+    ("no light", Trace, "it knows no void that could be unreached"),
+    ("glazing", Forward, "it carries flux along the skeleton, where glazing takes no share"),
+    ("black is direct", Backward, NO_REFLECTANCE),
+    ("black is direct", Forward, NO_REFLECTANCE),
+    ("monotone", Backward, NO_REFLECTANCE),
+    ("monotone", Forward, NO_REFLECTANCE),
+    ("white", Backward, "without reflectance there is nothing to warn of"),
+    ("white", Forward, "without reflectance there is nothing to warn of"),
+    ("white", Trace, "roulette ends its paths, and its warnings are of samples"),
+    ("furnace", Backward, NO_REFLECTANCE),
+    ("furnace", Forward, NO_REFLECTANCE),
+    ("coupled spheres", Backward, NO_REFLECTANCE),
+    ("coupled spheres", Forward, NO_REFLECTANCE),
+    ("bright tube", Backward, NO_REFLECTANCE),
+    ("bright tube", Forward, NO_REFLECTANCE),
+    ("grey tube", Backward, NO_REFLECTANCE),
+    ("grey tube", Forward, NO_REFLECTANCE),
+    ("candid", Backward, "that it knows no reflectance is what it is, not a state that a run could be in"),
+    ("truth", Backward, NO_REFLECTANCE),
+    ("truth", Forward, NO_REFLECTANCE),
+    ("own error", Backward, "a heuristic has no idea of its error"),
+    ("own error", Forward, "a heuristic has no idea of its error"),
 ];
 
 /// Why the method need not obey the law of that name; `None` where it must.
-pub fn exception(law: &str, method: &str) -> Option<&'static str> {
+pub fn exception(law: &str, method: Method) -> Option<&'static str> {
     EXCEPTIONS.iter().find(|(of, by, _)| *of == law && *by == method).map(|(.., reason)| *reason)
 }

@@ -17,7 +17,7 @@ const MEASURED: f64 = 0.03;
 
 fn network(case: &Case) -> Network<'_> {
     let settings = Settings { shares: true, ..Settings::default() };
-    Network::new(&case.model, &Quality::MEDIUM, &settings, &Quiet, &Cancel::new()).expect("nobody cancels")
+    Network::new(&case.model, &Quality::MEDIUM, &settings, &Quiet, &Cancel::new()).expect("nobody cancels").0
 }
 
 /// A room without a ceiling over part of it: light escapes.

@@ -62,10 +62,10 @@ impl Subject {
 /// How far a value may move when its random numbers are drawn anew, a factor: what issue 3 allows a shift of the grid. Methods
 /// without random numbers get none, and the control what its own standard errors say.
 pub fn redrawn_factor(method: Method) -> f64 {
-    match method.name() {
-        "backward" | "forward" | "trace" => 1.0 + 1e-4,
-        "diffusion" => 1.3,
-        _ => 1.1,
+    match method {
+        Method::Backward | Method::Forward | Method::Trace => 1.0 + 1e-4,
+        Method::Diffusion => 1.3,
+        Method::Network => 1.1,
     }
 }
 
@@ -172,7 +172,7 @@ fn check(law: &Law) {
     let mut excused: Vec<(Method, bool)> = Vec::new();
     for subject in subjects() {
         let Breaches(of_subject) = breaches(law, &subject);
-        let Some(reason) = exception(law.name, subject.method.name()) else {
+        let Some(reason) = exception(law.name, subject.method) else {
             found.extend(of_subject.iter().take(MOST_SHOWN).map(|breach| format!("{}: {breach}", subject.label)));
             let more = of_subject.len().saturating_sub(MOST_SHOWN);
             found.extend((more > 0).then(|| format!("{}: and {more} more", subject.label)));
@@ -234,6 +234,7 @@ laws! {
     a_bright_tube_has_its_radiosity: tube::BRIGHT_TUBE,
     a_grey_tube_has_its_radiosity: tube::GREY_TUBE,
     two_rooms_are_as_the_path_tracer_has_them: truth::TRUTH,
+    errors_are_owned_up_to: truth::OWN_ERROR,
     who_is_lost_says_so: tube::CANDID,
 }
 

@@ -129,6 +129,7 @@ const MUTANTS: &[Mutant] = &[
     ("a door half as wide", Method::Trace, truth::TRUTH, |field, _, _| {
         each(field, |at, it| times(it, if at < 4 { 1.0 } else { 0.75 }));
     }),
+    ("sure of itself", Method::Trace, truth::OWN_ERROR, |field, _, _| each(field, |_, it| it.value_w_m2 *= 1.4)),
     ("lost and silent", Method::Trace, tube::CANDID, |field, case, _| {
         each(field, |at, it| times(it, (-0.5 * f64::from(case.scene.sensors[at].position_m.x)).exp()));
     }),

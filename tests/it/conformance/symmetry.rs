@@ -16,25 +16,25 @@ const SHIFT: f64 = 0.02;
 /// Mirrored or turned, ties break and samples fall the other way: the factors that issue 3 allows a rotation; for the
 /// heuristics, what their voxels allow.
 fn turned_factor(method: Method) -> f64 {
-    match method.name() {
+    match method {
         // The way round the door's jamb by nodes that lie a voxel off.
-        "backward" => 1.3,
+        Method::Backward => 1.3,
         // The door's half-width is 4 voxels or 5, and counts by its square: 1.56, and the way besides.
-        "forward" => 1.8,
-        "diffusion" => 1.3,
+        Method::Forward => 1.8,
+        Method::Diffusion => 1.3,
         // Noise is allowed for apart.
-        "trace" => 1.01,
-        _ => 1.1,
+        Method::Trace => 1.01,
+        Method::Network => 1.1,
     }
 }
 
 /// The largest angle that a mirror or turn may put between directions, degrees: the median that issue 3 allows against truth.
 /// Directions of `forward` are those of steps between nodes, of `diffusion` those of currents along edges.
 fn turned_angle_deg(method: Method) -> f64 {
-    match method.name() {
-        "forward" => 25.0,
-        "diffusion" => 20.0,
-        _ => 10.0,
+    match method {
+        Method::Forward => 25.0,
+        Method::Diffusion => 20.0,
+        Method::Backward | Method::Network | Method::Trace => 10.0,
     }
 }
 
