@@ -83,11 +83,11 @@ impl Quality {
     /// The default.
     pub const MEDIUM: Self = Self {
         spacing: 0.4,
-        lines: 16,
+        lines: 20,
         neck_lines: 1024,
         photons: 4096,
         shadow_rays: 16,
-        gather: Some(Gather { rays: 512, neck_rays: 128 }),
+        gather: Some(Gather { rays: 768, neck_rays: 192 }),
     };
 
     /// Small zones, many lines.
@@ -223,13 +223,6 @@ impl<'a> Network<'a> {
 
         progress.begin("lines", 0);
         let lines = lines::lines(&grounds, quality, settings.seed);
-        eprintln!(
-            "zones {} patches {} starts {} lines {}",
-            grounds.zones.count,
-            grounds.patches.list.len(),
-            grounds.patches.starts.len(),
-            lines.len()
-        );
         let patches = grounds.patches.list.len();
         let [exchange, odd, even] =
             [Half::Both, Half::Odd, Half::Even].map(|half| Exchange::new(patches, &lines, half, |patch| patch));

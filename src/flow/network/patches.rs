@@ -25,6 +25,9 @@ const NONE: u32 = u32::MAX;
 /// a wall.
 const STEPS_OUT_VOXELS: [f32; 4] = [0.6, 1.2, 1.8, 2.5];
 
+/// Up to here nothing is looked for between a side that was met and the void before it, in voxels.
+const NEAR_OUT_VOXELS: f32 = 1.2;
+
 /// In a corner the void is looked for about a place this far out, in voxels.
 const CORNER_OUT_VOXELS: f32 = 1.2;
 
@@ -152,7 +155,7 @@ impl Patches {
     /// The patch of a point on a wall, its normal on the side that was hit, by a ray of that length that came
     /// along `direction`. `None` where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
-        let node = before_wall(model, hit.position_m, hit.normal)
+        let node = before_wall(model, hit.position_m, hit.normal, true)
             .or_else(|| back_along(model, hit.position_m, direction, length_m))?;
         self.like(zones.at(node, hit.position_m), hit.normal, hit.answer)
     }
@@ -167,7 +170,7 @@ fn points(model: &Model, zones: &Zones, count: u32, seed: u64) -> Vec<(u32, Star
         let side = move |normal: Vec3| {
             let WallPoint { triangle, position_m, .. } = point?;
             let answer = model.walls.answers.get(triangle as usize).copied().unwrap_or_default();
-            let node = before_wall(model, position_m, normal)?;
+            let node = before_wall(model, position_m, normal, false)?;
             Some((kind(zones.at(node, position_m), normal, answer), Start { position_m, normal, answer }))
         };
         let normal = point.map_or(Vec3::Z, |point| point.normal);
@@ -177,18 +180,18 @@ fn points(model: &Model, zones: &Zones, count: u32, seed: u64) -> Vec<(u32, Star
 }
 
 /// The node of the void before a wall: straight out, or, in the corners of walls, where conservative voxels fill the
-/// corner, the nearest that is in sight.
-fn before_wall(model: &Model, point_m: Vec3, normal: Vec3) -> Option<u32> {
+/// corner, the nearest that is in sight. A side that a ray has `met` is known to be open.
+fn before_wall(model: &Model, point_m: Vec3, normal: Vec3, met: bool) -> Option<u32> {
     let lattice = &model.voxels.lattice;
     let lifted_m = point_m + normal * model.rays.epsilon_m();
     let node = |at_m: Vec3| model.skeleton.nearest.node(lattice.voxel_at(at_m));
     let straight = STEPS_OUT_VOXELS.into_iter().find_map(|out| {
         let at_m = point_m + normal * (out * lattice.voxel_m);
-        Some((node(at_m)?, at_m))
+        Some((node(at_m)?, at_m, met && out <= NEAR_OUT_VOXELS))
     });
-    if let Some((node, at_m)) = straight {
+    if let Some((node, at_m, is_sure)) = straight {
         // The void behind a thin wall is not before its inner side.
-        return model.rays.clear(lifted_m, at_m).then_some(node);
+        return (is_sure || model.rays.clear(lifted_m, at_m)).then_some(node);
     }
     let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
     let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
