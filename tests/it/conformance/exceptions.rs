@@ -19,7 +19,7 @@ pub const EXCEPTIONS: &[(&str, Method, &str)] = &[
     ),
     (
         "nothing outshines the light",
-        DIFFUSION,
+        Diffusion,
         "its diffuse light has one value across a room, which one black wall among white ones makes uneven",
     ),
     (
