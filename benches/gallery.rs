@@ -1,7 +1,8 @@
 //! From the gallery's mesh to estimates at its sensors, voxels of 0.1 m: `cargo bench --bench gallery`.
 //!
 //! Prints medians of 15 runs after a warm-up for each stage and each estimator, for one thread and for two, and the peak
-//! memory of a run of the program. Loading the mesh is not counted, building the rays is. Of the skeleton's time `sections`
+//! memory of a run of the program. Loading the mesh is not counted, building the rays is; `to network` is the way from the mesh
+//! to the field of `network`. Of the skeleton's time `sections`
 //! is a part, and of that `nearest`, which is timed once more by itself, after the rest.
 
 use lightvein::flow::estimator;
@@ -20,6 +21,12 @@ use std::time::Instant;
 const RUNS: usize = 15;
 const VOXEL_M: f32 = 0.1;
 
+/// The estimators that are timed.
+const METHODS: [Method; 4] = [Method::Backward, Method::Forward, Method::Diffusion, Method::Network];
+
+/// Stages before them, from the rays to the sensors' places.
+const STAGES: usize = 4;
+
 fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/gallery.toml");
     let scene = Scene::load(&path, &Quiet, &Cancel::new())?;
@@ -32,7 +39,10 @@ fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
 }
 
 fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    let names = ["rays", "voxels", "skeleton", "places", "backward", "forward", "all", "sections", "nearest"];
+    let stages = ["rays", "voxels", "skeleton", "places"];
+    let names: Vec<&str> = (stages.into_iter().chain(METHODS.map(Method::name)))
+        .chain(["to network", "sections", "nearest"])
+        .collect();
     let mut times_ms = vec![Vec::new(); names.len()];
     for run in 0..=RUNS {
         let row = time_once(scene)?;
@@ -51,7 +61,7 @@ fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error + Send + S
 }
 
 /// One run; milliseconds in the order of the names.
-fn time_once(scene: &Scene) -> Result<[f64; 9], Box<dyn std::error::Error + Send + Sync>> {
+fn time_once(scene: &Scene) -> Result<Vec<f64>, Box<dyn std::error::Error + Send + Sync>> {
     let (progress, cancel, settings) = (Quiet, Cancel::new(), Settings::default());
     let began = Instant::now();
     let mut laps_ms = Vec::new();
@@ -68,25 +78,26 @@ fn time_once(scene: &Scene) -> Result<[f64; 9], Box<dyn std::error::Error + Send
     let model = Model::of(scene, rays, sources, voxels, skeleton);
     let probes = model.probes_at_sensors(scene);
     lap();
-    for method in [Method::Backward, Method::Forward] {
+    for method in METHODS {
         let estimate = estimator(method).ok_or("not an estimator")?;
         std::hint::black_box(estimate(&model, &probes, &settings, &progress, &cancel)?);
         lap();
     }
-    let all_ms = began.elapsed().as_secs_f64() * 1e3;
     let mut before_ms = 0.0;
-    let mut row = [all_ms; 9];
-    for (stage_ms, lap_ms) in row.iter_mut().zip(laps_ms) {
-        *stage_ms = lap_ms - before_ms;
+    let mut row = Vec::new();
+    for lap_ms in laps_ms {
+        row.push(lap_ms - before_ms);
         before_ms = lap_ms;
     }
-    row[7] = *sections.took_ms.lock().map_err(|_| "a stage panicked")?;
+    let network_ms = row.last().copied().unwrap_or(0.0);
+    row.push(row.iter().take(STAGES).sum::<f64>() + network_ms);
+    row.push(*sections.took_ms.lock().map_err(|_| "a stage panicked")?);
     let lattice = model.skeleton.lattice;
     let nodes = model.skeleton.graph.node_weights();
     let corners: Vec<_> = nodes.map(|node| lattice.point_in_grid(node.position_m).round().as_ivec3()).collect();
     let began = Instant::now();
     std::hint::black_box(Nearest::new(&model.voxels.void, &corners));
-    row[8] = began.elapsed().as_secs_f64() * 1e3;
+    row.push(began.elapsed().as_secs_f64() * 1e3);
     Ok(row)
 }
 
