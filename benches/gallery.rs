@@ -40,9 +40,8 @@ fn main() -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
 
 fn time_stages(scene: &Scene) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let stages = ["rays", "voxels", "skeleton", "places"];
-    let names: Vec<&str> = (stages.into_iter().chain(METHODS.map(Method::name)))
-        .chain(["to network", "sections", "nearest"])
-        .collect();
+    let names: Vec<&str> =
+        (stages.into_iter().chain(METHODS.map(Method::name))).chain(["to network", "sections", "nearest"]).collect();
     let mut times_ms = vec![Vec::new(); names.len()];
     for run in 0..=RUNS {
         let row = time_once(scene)?;

@@ -107,13 +107,8 @@ impl Quality {
 }
 
 /// The qualities, the cheapest first, with their names.
-pub const LADDER: [(&str, Quality); 5] = [
-    ("coarse, read", Quality::COARSE.read()),
-    ("coarse", Quality::COARSE),
-    ("read", Quality::MEDIUM.read()),
-    ("", Quality::MEDIUM),
-    ("fine", Quality::FINE),
-];
+pub const LADDER: [(&str, Quality); 4] =
+    [("coarse", Quality::COARSE), ("read", Quality::MEDIUM.read()), ("", Quality::MEDIUM), ("fine", Quality::FINE)];
 
 /// Irradiance at the probes by the network at its default quality.
 ///

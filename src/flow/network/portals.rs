@@ -106,8 +106,8 @@ mod tests {
         let normal = Vec3::new(0.3, 0.8, -0.1).normalize();
         let centre_m = Vec3::new(5.0, 2.0, 1.0);
         let (u, v) = normal.any_orthonormal_pair();
-        let outline_m = (0..32).map(|ray| {
-            let (sine, cosine) = ((ray as f32 + 0.5) * TAU / 32.0).sin_cos();
+        let outline_m = (0..64).map(|ray| {
+            let (sine, cosine) = ((ray as f32 + 0.5) * TAU / 64.0).sin_cos();
             // A rectangle about a point that is not its middle.
             let reach = |part: f32, up: f32, down: f32| if part > 0.0 { up / part } else { -down / part };
             let reach_m = reach(cosine, 0.7, 0.3).min(reach(sine, 1.5, 0.4));
