@@ -36,6 +36,7 @@ use lines::Line;
 use patches::{Patches, Start};
 use petgraph::graph::NodeIndex;
 use portals::Portal;
+use rayon::prelude::*;
 use read::Tracks;
 use zones::Zones;
 
@@ -50,6 +51,8 @@ pub struct Quality {
     pub spacing: f32,
     /// Lines from a patch.
     pub lines: u32,
+    /// Lines from all patches: where these are few, each sends more, up to [`MOST_TIMES_LINES`] times as many.
+    pub all_lines: u32,
     /// Lines through a neck.
     pub neck_lines: u32,
     /// Photons of all lights together.
@@ -59,6 +62,9 @@ pub struct Quality {
     /// Rays by which sensors gather; `None` to read the zones.
     pub gather: Option<Gather>,
 }
+
+/// How many times as many lines a patch sends where patches are few: more would only sharpen what the patch blurs.
+pub const MOST_TIMES_LINES: u32 = 4;
 
 /// The rays of a sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +80,7 @@ impl Quality {
     pub const COARSE: Self = Self {
         spacing: 0.8,
         lines: 8,
+        all_lines: 4096,
         neck_lines: 256,
         photons: 2048,
         shadow_rays: 8,
@@ -84,6 +91,7 @@ impl Quality {
     pub const MEDIUM: Self = Self {
         spacing: 0.4,
         lines: 20,
+        all_lines: 42_000,
         neck_lines: 1024,
         photons: 4096,
         shadow_rays: 16,
@@ -94,6 +102,7 @@ impl Quality {
     pub const FINE: Self = Self {
         spacing: 0.28,
         lines: 48,
+        all_lines: 200_000,
         neck_lines: 4096,
         photons: 32_768,
         shadow_rays: 32,
@@ -219,8 +228,9 @@ impl<'a> Network<'a> {
         progress.begin("lines", 0);
         let lines = lines::lines(&grounds, quality, settings.seed);
         let patches = grounds.patches.list.len();
-        let [exchange, odd, even] =
-            [Half::Both, Half::Odd, Half::Even].map(|half| Exchange::new(patches, &lines, half, |patch| patch));
+        let halves = [Half::Both, Half::Odd, Half::Even];
+        let of_half = |half: Half| Exchange::new(patches, &lines, half, |patch| patch);
+        let exchanges: Vec<Exchange> = halves.into_par_iter().map(of_half).collect();
         progress.end();
         cancel.check()?;
 
@@ -238,13 +248,16 @@ impl<'a> Network<'a> {
             all_w.iter_mut().zip(&landing.reflected_w).for_each(|(sum, part)| *sum += part);
         }
         let each_w = || landings.iter().map(|landing| landing.reflected_w.clone()).collect();
-        let columns_w: Vec<Vec<f64>> = if settings.shares { each_w() } else { vec![all_w.clone()] };
-        let reflected_w_m2 = balance::reflected_w_m2(&exchange, &reflectances, &columns_w);
         let by = |exchange: &Exchange| {
             balance::reflected_w_m2(exchange, &reflectances, std::slice::from_ref(&all_w)).pop().unwrap_or_default()
         };
-        let coarse = coarser(&grounds, &lines, &reflectances, &all_w);
-        let variants_w_m2 = [by(&odd), by(&even), coarse];
+        let columns_w: Vec<Vec<f64>> = if settings.shares { each_w() } else { vec![all_w.clone()] };
+        let ((reflected_w_m2, odd), (even, coarse)) = rayon::join(
+            || (balance::reflected_w_m2(&exchanges[0], &reflectances, &columns_w), by(&exchanges[1])),
+            || (by(&exchanges[2]), coarser(&grounds, &lines, &reflectances, &all_w)),
+        );
+        let exchange = exchanges.into_iter().next().unwrap_or_default();
+        let variants_w_m2 = [odd, even, coarse];
         progress.end();
         let lit = lit(model);
         let warnings = balance::without_end(&exchange, &reflectances, &all_w).then(|| NOTHING_ABSORBS.to_owned());

@@ -6,8 +6,8 @@
 //!
 //! Limits: crevices that the voxels close have no zone; what is in them is taken to be where the void ends before them.
 
-use super::Quality;
 use super::zones::Zones;
+use super::{MOST_TIMES_LINES, Quality};
 use crate::flow::sequence;
 use crate::model::Model;
 use crate::model::walls::{Answer, WallPoint};
@@ -96,7 +96,9 @@ impl Patches {
         let mut kinds: Vec<u32> = found.iter().map(|(kind, _)| *kind).collect();
         kinds.sort_unstable();
         kinds.dedup();
-        let wanted = POINTS_A_LINE * f64::from(quality.lines) * kinds.len() as f64;
+        let few = quality.all_lines / (kinds.len() as u32).max(1);
+        let lines = few.clamp(quality.lines, MOST_TIMES_LINES * quality.lines);
+        let wanted = POINTS_A_LINE * f64::from(lines) * kinds.len() as f64;
         if (found.len() as f64) < wanted {
             tried = (f64::from(tried) * wanted / found.len() as f64).min(MOST_POINTS).ceil() as u32;
             found = points(model, zones, tried, seed);
@@ -106,7 +108,7 @@ impl Patches {
         found.sort_by_key(|(kind, _)| *kind);
         let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
         for side in found.chunk_by(|a, b| a.0 == b.0) {
-            patches.add(side, point_m2, quality.lines);
+            patches.add(side, point_m2, lines);
         }
         patches.fill_kinds();
         patches
