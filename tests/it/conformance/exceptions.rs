@@ -61,7 +61,6 @@ pub const EXCEPTIONS: &[(&str, Method, &str, &str)] = &[
     ),
     ("seeds", Network, "read", ONE_A_ZONE),
     ("shares sum to the value", Network, "read", ONE_A_ZONE),
-    ("coupled spheres", Network, "read", ONE_A_ZONE),
     ("faces as quads", Network, "fine", "behind the door the two are 10.1% apart where 10% are allowed; not explained"),
     ("own error", Forward, "", "a heuristic has no idea of its error"),
 ];
