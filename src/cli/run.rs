@@ -9,7 +9,7 @@ use super::stress;
 use super::write::{self, Analysed, Folder};
 use super::{tell, tolerance};
 use crate::export;
-use crate::flow::{Estimator, estimator, ladder};
+use crate::flow::{Estimator, estimator, ladder, network};
 use crate::job::{Cancel, Progress};
 use crate::light::{Settings, Sources};
 use crate::model::Model;
@@ -55,11 +55,14 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
     warn(&warnings);
 
     if let Some(folder) = &mut folder {
+        // Nodes and faces are many: there a network is read at its zones.
+        let read = network::with(network::Quality::MEDIUM.read());
+        let elsewhere = if method == Method::Network { Some(&*read) } else { estimate.as_deref() };
         let analysed = Analysed {
             scene: &scene,
             model: &model,
             at_sensors: &field,
-            estimate: estimate.as_deref(),
+            estimate: elsewhere,
             settings: &plan.settings,
         };
         write::analysis(folder, &analysed, &stages, cancel)?;

@@ -46,7 +46,7 @@ impl Lamp {
 
 /// What the lamps give to a probe in `cell`, whose necks lead to the cells `next`: as light straight from them, with
 /// its standard error if the draws were by chance, W/m2. `turn` in [0, 1)
-/// places the draws. Costs some nanoseconds a lamp and at most [`DRAWS`] rays.
+/// places the draws. Costs some nanoseconds a lamp and at most `DRAWS` rays.
 pub fn gathered(
     model: &Model,
     probe: &Probe,

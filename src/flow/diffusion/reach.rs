@@ -1,7 +1,7 @@
 //! What lies around each node along the curve: void and wall, pooled over about one width.
 //!
 //! A node's own voxels are a slice of void a voxel thick, with a wall of its own or none; a mean free path takes a piece of
-//! passage. It is pooled within [`WIDTHS`] of the passage's width to either side, and not through a neck: what is beyond a
+//! passage. It is pooled within `WIDTHS` of the passage's width to either side, and not through a neck: what is beyond a
 //! door belongs to another room.
 
 use super::surroundings::Surroundings;

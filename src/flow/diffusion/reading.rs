@@ -49,7 +49,7 @@ pub struct Lit<'a> {
     pub landed: &'a [Landed],
     /// The diffuse light of all lights.
     pub diffuse: &'a [Diffuse],
-    /// Whether each emitter's share is asked for; [`Lit::diffuse`] then has an entry a light.
+    /// Whether each emitter's share is asked for; `Lit::diffuse` then has an entry a light.
     pub shares: bool,
     /// Seed of the shadow rays.
     pub seed: u64,

@@ -37,7 +37,7 @@ pub struct View {
 }
 
 /// What a point on the side of the neck's cell number `side` (0 or 1) sees of it past opaque things, weakened by glazing;
-/// `None` where it sees nothing. Costs [`PARTS`] rays.
+/// `None` where it sees nothing. Costs `PARTS` rays.
 pub fn view(model: &Model, neck: &Neck, side: usize, point_m: Vec3) -> Option<View> {
     let corners = neck.outline_m.len();
     if corners < PARTS * (CORNERS - 1) {

@@ -2,8 +2,8 @@
 //!
 //! Steps, each in its file: the void is parted into [zones] that never cross a neck; what a zone sees in one direction is a
 //! [patch](patches); [lines] from patches and through [necks](portals) measure what each patch sees of each other; light
-//! [lands](landing) straight from its sources; the [balance] of all reflections is one sparse system; a sensor [gathers] it by
-//! rays over its sphere and through the necks of its room, beside the exact direct light; or the zones are [read] without a
+//! [lands](mod@landing) straight from its sources; the [balance] of all reflections is one sparse system; a sensor [gathers](mod@gather) it by
+//! rays over its sphere and through the necks of its room, beside the exact direct light; or the zones are [read](mod@read) without a
 //! ray more, for many thousands of points. Oriented patches are the poster's
 //! own next step, "an oriented reflectivity a node" (Chaussard, Biri, Couprie); the balance is radiosity (Goral et al. 1984)
 //! with lines in place of form factors (Sbert 1993), weighed by the balance heuristic (Veach & Guibas 1995).

@@ -38,7 +38,7 @@ struct Undisturbed<'a> {
     fields: Vec<Field>,
 }
 
-/// Disturbs a scene that was modelled, in all ways of [`Trials::failures`] that can be done to one: rows in their order.
+/// Disturbs a scene that was modelled, in all ways of [`Trials::failures`](super::Trials::failures) that can be done to one: rows in their order.
 ///
 /// A disturbance that cannot be modelled (voxels larger than the scene, a grid that does not fit) gives rows without figures
 /// and with the error for a warning.
