@@ -93,43 +93,40 @@ pub struct StressArgs {
     /// Samples a sensor of a traced truth; small openings take up to 256 times as many
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub spp: u32,
-    /// Edge of a voxel in metres; by default each scene's own, and 0.1 for the built-in ones
-    #[arg(long, value_name = "METRES", value_parser = edge_m)]
-    pub voxel: Option<f32>,
-    /// Threads to work on; by default one a core. The figures do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Seed of all random numbers
-    #[arg(long)]
-    pub seed: Option<u64>,
-    /// One JSON object on stdout instead of tables
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub flags: Flags,
     /// Folder for the files; made if it is not there
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
 }
 
 /// What every command takes.
-#[derive(Debug, clap::Args)]
-pub struct Common {
-    /// A scene file (.toml), or a mesh (.obj .gltf .glb .ply .stl)
-    pub scene: PathBuf,
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Flags {
     /// Edge of a voxel in metres; by default the scene file's, or one that is chosen
     #[arg(long, value_name = "METRES", value_parser = edge_m)]
     pub voxel: Option<f32>,
-    /// Factor within which the estimate is to be right
-    #[arg(long, value_name = "FACTOR", value_parser = factor)]
-    pub tolerance: Option<f64>,
     /// Threads to work on; by default one a core. The figures do not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Seed of all random numbers
     #[arg(long)]
     pub seed: Option<u64>,
-    /// One JSON object on stdout instead of tables
+    /// One JSON object on stdout instead of tables and text
     #[arg(long)]
     pub json: bool,
+}
+
+/// What commands over one scene take.
+#[derive(Debug, clap::Args)]
+pub struct Common {
+    /// A scene file (.toml), or a mesh (.obj .gltf .glb .ply .stl)
+    pub scene: PathBuf,
+    /// Factor within which the estimate is to be right
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    pub tolerance: Option<f64>,
+    #[command(flatten)]
+    pub flags: Flags,
     /// Folder for the files; made if it is not there
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -141,18 +138,8 @@ pub struct Many {
     /// Scene files (.toml)
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Edge of a voxel in metres; by default each scene file's, or one that is chosen
-    #[arg(long, value_name = "METRES", value_parser = edge_m)]
-    pub voxel: Option<f32>,
-    /// Threads to work on; by default one a core. The figures do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Seed of all random numbers
-    #[arg(long)]
-    pub seed: Option<u64>,
-    /// One JSON object on stdout instead of text
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub flags: Flags,
     /// Folder for the files; made if it is not there
     #[arg(short, long = "output", value_name = "DIR", required = true)]
     pub output: PathBuf,

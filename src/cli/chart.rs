@@ -2,7 +2,7 @@
 
 use super::args::Many;
 use super::peer;
-use super::run::{most_bytes, say, warn};
+use super::run::{most_bytes, say, start_threads, warn};
 use super::stages::{Stages, processor_seconds};
 use super::tell;
 use super::write::Folder;
@@ -17,7 +17,7 @@ use crate::study::chart::measure::{Measurement, compare_points};
 use crate::study::chart::verdict::verdict;
 use crate::study::chart::{Point, SceneChart};
 use crate::study::errors::is_good;
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use serde::Serialize;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -54,10 +54,7 @@ pub fn run(many: &Many, timing: &Timing, peers: &[PathBuf], cancel: &Cancel) -> 
         bail!("--processor-time: this system does not tell the processor time of threads");
     }
     let peers = peer::read_all(peers)?;
-    if let Some(threads) = many.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
-        pool.build_global().context("the threads cannot be started")?;
-    }
+    start_threads(many.flags.threads.map(usize::from))?;
     let measured = many.scenes.iter().map(|path| measure(path, many, timing, cancel));
     let mut charts = measured.collect::<Result<Vec<SceneChart>>>()?;
     for chart in &mut charts {
@@ -78,7 +75,7 @@ pub fn run(many: &Many, timing: &Timing, peers: &[PathBuf], cancel: &Cancel) -> 
     folder.file("chart.csv", |out| write_csv(out, &charts))?;
     folder.file("chart.txt", |out| out.write_all(text.as_bytes()))?;
     folder.list();
-    say(&if many.json { format!("{json}\n") } else { text })
+    say(&if many.flags.json { format!("{json}\n") } else { text })
 }
 
 /// All points of one scene.
@@ -95,7 +92,7 @@ fn measure(path: &Path, many: &Many, timing: &Timing, cancel: &Cancel) -> Result
     let rays = Arc::new(Rays::new(&scene));
     stages.end();
 
-    let voxel_m = match many.voxel.or(scene.model.voxel_m) {
+    let voxel_m = match many.flags.voxel.or(scene.model.voxel_m) {
         Some(voxel_m) => voxel_m,
         None => {
             let chosen = choose_voxel_m(&scene, &rays, most_bytes(), &stages, cancel)?;
@@ -112,7 +109,7 @@ fn measure(path: &Path, many: &Many, timing: &Timing, cancel: &Cancel) -> Result
         budget_seconds: timing.budget,
         trace_budget_seconds: timing.trace_budget,
         max_bytes: most_bytes(),
-        settings: Settings { seed: many.seed.or(scene.model.seed).unwrap_or(0), ..Settings::default() },
+        settings: Settings { seed: many.flags.seed.or(scene.model.seed).unwrap_or(0), ..Settings::default() },
         clock: if timing.processor_time { &|| processor_seconds().unwrap_or(f64::NAN) } else { &wall },
     };
     let chart = measurement.run(&stages, cancel)?;

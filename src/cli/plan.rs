@@ -1,6 +1,6 @@
 //! What will run: the command line and the scene file's `[model]` joined; what is typed goes before what the file says.
 
-use super::args::Common;
+use super::args::Flags;
 use crate::light::Settings;
 use crate::scene::{Method, ModelChoice};
 
@@ -21,13 +21,19 @@ pub struct Plan {
 
 impl Plan {
     /// The plan of a command: its common flags, its own choices, and the scene file's.
-    pub fn new(common: &Common, method: Option<Method>, settings: Settings, file: &ModelChoice) -> Self {
+    pub fn new(
+        flags: &Flags,
+        tolerance: Option<f64>,
+        method: Option<Method>,
+        settings: Settings,
+        file: &ModelChoice,
+    ) -> Self {
         Self {
-            voxel_m: common.voxel.or(file.voxel_m),
+            voxel_m: flags.voxel.or(file.voxel_m),
             method: method.or(file.method),
-            settings: Settings { seed: common.seed.or(file.seed).unwrap_or(0), ..settings },
-            threads: common.threads.map(usize::from).or(file.threads),
-            tolerance: common.tolerance.or(file.tolerance),
+            settings: Settings { seed: flags.seed.or(file.seed).unwrap_or(0), ..settings },
+            threads: flags.threads.map(usize::from).or(file.threads),
+            tolerance: tolerance.or(file.tolerance),
         }
     }
 }
@@ -36,27 +42,15 @@ impl Plan {
 mod tests {
     use super::*;
 
-    fn common() -> Common {
-        Common {
-            scene: "x.toml".into(),
-            voxel: None,
-            tolerance: None,
-            threads: None,
-            seed: None,
-            json: false,
-            output: None,
-        }
-    }
-
     #[test]
     fn what_is_typed_goes_before_what_the_file_says() {
         let file =
             ModelChoice { voxel_m: Some(0.1), method: Some(Method::Forward), seed: Some(7), ..Default::default() };
-        let plan = Plan::new(&common(), None, Settings::default(), &file);
+        let plan = Plan::new(&Flags::default(), None, None, Settings::default(), &file);
         assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.1), Some(Method::Forward), 7));
 
-        let typed = Common { voxel: Some(0.2), seed: Some(1), ..common() };
-        let plan = Plan::new(&typed, Some(Method::Backward), Settings::default(), &file);
+        let typed = Flags { voxel: Some(0.2), seed: Some(1), ..Flags::default() };
+        let plan = Plan::new(&typed, None, Some(Method::Backward), Settings::default(), &file);
         assert_eq!((plan.voxel_m, plan.method, plan.settings.seed), (Some(0.2), Some(Method::Backward), 1));
     }
 }

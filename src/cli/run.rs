@@ -74,7 +74,7 @@ fn run_analyse(common: &Common, method: Option<Method>, cancel: &Cancel) -> Resu
         folder.file("report.json", |out| writeln!(out, "{json}"))?;
         folder.list();
     }
-    if common.json {
+    if common.flags.json {
         return say(&format!("{json}\n"));
     }
     let mut text = analysis.summary();
@@ -129,7 +129,7 @@ fn run_compare(common: &Common, methods: &[Method], spp: Option<u32>, cancel: &C
         folder.file("compare.json", |out| writeln!(out, "{json}"))?;
         folder.list();
     }
-    if common.json {
+    if common.flags.json {
         return say(&format!("{json}\n"));
     }
     say(&format!(
@@ -188,15 +188,22 @@ fn open(
 ) -> Result<(Scene, Plan)> {
     stages.begin("load", 0);
     // On threads of its own: those of the whole run may be named in the file, and can be set but once.
-    let loading = rayon::ThreadPoolBuilder::new().num_threads(common.threads.unwrap_or(0).into()).build()?;
+    let loading = rayon::ThreadPoolBuilder::new().num_threads(common.flags.threads.unwrap_or(0).into()).build()?;
     let scene = loading.install(|| Scene::load(&common.scene, stages, cancel))?;
     drop(loading);
     stages.end();
-    let plan = Plan::new(common, method, settings, &scene.model);
-    if let Some(threads) = plan.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("the threads cannot be started")?;
-    }
+    let plan = Plan::new(&common.flags, common.tolerance, method, settings, &scene.model);
+    start_threads(plan.threads)?;
     Ok((scene, plan))
+}
+
+/// Starts so many threads for all that follows; `None` leaves it to be one a core.
+///
+/// # Errors
+/// They were started already, or the system gives none.
+pub fn start_threads(threads: Option<usize>) -> Result<()> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().context("the threads cannot be started")
 }
 
 /// Share of the memory at hand that voxels and skeleton may take; the rest is for rays, fields and the system.

@@ -1,8 +1,8 @@
 //! The command `stress`: given scenes disturbed, built-in ones asked; tables, JSON and files of what was found.
 
-use super::args::{Common, StressArgs};
+use super::args::StressArgs;
 use super::plan::Plan;
-use super::run::{most_bytes, prepare, say, warn};
+use super::run::{most_bytes, prepare, say, start_threads, warn};
 use super::stages::Stages;
 use super::table::Table;
 use super::write::Folder;
@@ -16,7 +16,7 @@ use crate::study::stress::asked::Asked;
 use crate::study::stress::built_in::stress_built_in;
 use crate::study::stress::given::stress_scene;
 use crate::study::stress::{Row, Statuses, Trials};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde::Serialize;
 use std::io::IsTerminal;
 
@@ -67,17 +67,14 @@ struct Figures {
 pub fn run(args: &StressArgs, cancel: &Cancel) -> Result<()> {
     let stages = Stages::new(std::io::stderr().is_terminal());
     let mut folder = args.output.as_deref().map(Folder::new).transpose()?;
-    if let Some(threads) = args.threads {
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-        threads.build_global().context("the threads cannot be started")?;
-    }
+    start_threads(args.flags.threads.map(usize::from))?;
     let trials = Trials {
         failures: args.rows.clone(),
         offsets: args.offsets,
         turns: args.turns,
         seeds: args.seeds,
         samples: args.spp,
-        seed: args.seed.unwrap_or(0),
+        seed: args.flags.seed.unwrap_or(0),
         max_bytes: most_bytes(),
     };
     let contestants: Vec<Contestant> = methods(args).into_iter().map(Contestant::built_in).collect();
@@ -87,21 +84,12 @@ pub fn run(args: &StressArgs, cancel: &Cancel) -> Result<()> {
     let mut given = Vec::new();
     for path in &args.scenes {
         let mut scene = Scene::load(path, &stages, cancel)?;
-        let common = Common {
-            scene: path.clone(),
-            voxel: args.voxel,
-            tolerance: None,
-            threads: None,
-            seed: None,
-            json: args.json,
-            output: None,
-        };
-        let plan = Plan::new(&common, None, Settings::default(), &scene.model);
+        let plan = Plan::new(&args.flags, None, None, Settings::default(), &scene.model);
         let (model, warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
         warn(&warnings);
         given.extend(stress_scene(&scene, &model, asked)?);
     }
-    let built_in = stress_built_in(args.voxel.unwrap_or(VOXEL_M), asked)?;
+    let built_in = stress_built_in(args.flags.voxel.unwrap_or(VOXEL_M), asked)?;
     stages.end();
 
     let rows = [given.as_slice(), &built_in].concat();
@@ -117,7 +105,7 @@ pub fn run(args: &StressArgs, cancel: &Cancel) -> Result<()> {
         }
         folder.list();
     }
-    if args.json { say(&format!("{json}\n")) } else { say(&in_words(&rows, seconds)) }
+    if args.flags.json { say(&format!("{json}\n")) } else { say(&in_words(&rows, seconds)) }
 }
 
 /// The methods asked for; by default every estimator, and not the path tracer.

@@ -7,14 +7,15 @@
 //! with few, its mean is the better answer.
 
 use super::patches::Start;
+use super::portals::Portal;
 use super::walk::{End, walk};
 use super::{Gather, Network};
-use crate::flow::direct::direct;
+use crate::flow::direct::{Direct, direct};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Field, Reading, Settings, Shares, Status};
+use crate::light::{Field, Reading, Settings, Status};
 use crate::model::Probe;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -27,7 +28,7 @@ const LARGE_FROM_RAYS: usize = 6;
 /// A light that brings less than this share of a patch's irradiance is not asked for at points of it.
 const LEAST_SHARE: f64 = 0.02;
 
-/// Most necks that rays are aimed at.
+/// Most necks that rays are aimed at, those that show largest.
 const MOST_NECKS: usize = 8;
 
 /// Offsets of the sensors' sequences start here.
@@ -56,12 +57,7 @@ pub fn gather(
         })
         .collect();
     progress.end();
-    let (readings, rows): (Vec<Reading>, Vec<Vec<f64>>) = answers?.into_iter().unzip();
-    let shares = settings.shares.then(|| Shares {
-        emitters: network.grounds.model.shining.len(),
-        values_w_m2: rows.into_iter().flatten().collect(),
-    });
-    Ok(Field { readings, warnings: network.warnings.clone(), shares })
+    Ok(network.field(answers?, settings))
 }
 
 /// A ray from a sensor and what it meets.
@@ -82,13 +78,7 @@ fn at_probe(network: &Network, rays: &Gather, probe: &Probe, offset: [f64; 2]) -
         return (Reading::none(probe.place.err().unwrap_or(Status::Unreached)), vec![0.0; lamps]);
     };
     let from_m = probe.position_m + probe.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
-    let (mut value_w_m2, mut flux_w_m2, mut row) = (0.0, DVec3::ZERO, vec![0.0; lamps]);
-    for shining in network.lamps() {
-        let straight = direct(model, from_m, probe.normal, shining.emitter, DIRECT_RAYS, offset);
-        value_w_m2 += straight.value_w_m2;
-        flux_w_m2 += straight.flux_w_m2;
-        row[shining.emitter] += straight.value_w_m2;
-    }
+    let (Direct { mut value_w_m2, mut flux_w_m2 }, mut row) = network.straight(probe, DIRECT_RAYS, offset);
 
     let cell = model.skeleton.graph.node_weight(node).map_or(u32::MAX, |node| node.cell);
     let sights = sights(network, rays, from_m, probe.normal, cell, offset);
@@ -148,8 +138,13 @@ fn sights(
     cell: u32,
     offset: [f64; 2],
 ) -> Vec<Sight> {
-    let portals: Vec<&super::Portal> =
-        (network.grounds.portals.iter()).filter(|portal| portal.cells.contains(&cell)).take(MOST_NECKS).collect();
+    let mut portals: Vec<&Portal> =
+        network.grounds.portals.iter().filter(|portal| portal.cells.contains(&cell)).collect();
+    if portals.len() > MOST_NECKS {
+        let shows = |portal: &Portal| portal.area_m2 / f64::from(portal.centre_m.distance_squared(from_m));
+        portals.sort_by(|a, b| shows(b).total_cmp(&shows(a)));
+        portals.truncate(MOST_NECKS);
+    }
     let count = rays.rays;
     let over_all = (0..count).map(|ray| match normal {
         None => sequence::spiral(ray, count, offset),

@@ -2,10 +2,10 @@
 //!
 //! Steps, each in its file: the void is parted into [zones] that never cross a neck; what a zone sees in one direction is a
 //! [patch](patches); [lines] from patches and through [necks](portals) measure what each patch sees of each other; light
-//! [lands](mod@landing) straight from its sources; the [balance] of all reflections is one sparse system; a sensor [gathers](mod@gather) it by
-//! rays over its sphere and through the necks of its room, beside the exact direct light; or the zones are [read](mod@read) without a
-//! ray more, for many thousands of points. Oriented patches are the poster's
-//! own next step, "an oriented reflectivity a node" (Chaussard, Biri, Couprie); the balance is radiosity (Goral et al. 1984)
+//! [lands](mod@landing) straight from its sources; the [balance] of all reflections is one sparse system; a sensor
+//! [gathers](mod@gather) it by rays over its sphere and through the necks of its room, beside the exact direct light; or
+//! the zones are [read](mod@read) without a ray more, for many thousands of points. Oriented patches are the poster's own
+//! next step, "an oriented reflectivity a node" (Chaussard, Biri, Couprie); the balance is radiosity (Goral et al. 1984)
 //! with lines in place of form factors (Sbert 1993), weighed by the balance heuristic (Veach & Guibas 1995).
 //!
 //! Own error estimate, [`Reading::error_w_m2`](crate::light::Reading::error_w_m2): the same answer from either half of the
@@ -26,8 +26,9 @@ pub mod walk;
 pub mod zones;
 
 use crate::flow::Estimator;
+use crate::flow::direct::{Direct, direct};
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Field, Settings, Status};
+use crate::light::{Field, Reading, Settings, Shares, Status};
 use crate::model::{Model, Probe, Shining};
 use exchange::{Exchange, Half};
 use glam::Vec3;
@@ -209,7 +210,8 @@ pub struct Network<'a> {
 }
 
 impl<'a> Network<'a> {
-    /// Measures and solves the network of a model; the lines that it stands on beside it. Costs the rays that `quality` says, some microseconds each.
+    /// Measures and solves the network of a model; the lines that it stands on beside it. Costs the rays that `quality` says,
+    /// some microseconds each.
     ///
     /// # Errors
     /// [`Cancelled`] when `cancel` was raised.
@@ -288,6 +290,29 @@ impl<'a> Network<'a> {
     /// The lights that shine into the void.
     fn lamps(&self) -> impl Iterator<Item = &Shining> {
         self.grounds.model.shining.iter().filter(|shining| shining.place.is_ok() && shining.flux_w > 0.0)
+    }
+
+    /// What comes straight from the lights to a probe, and of it the part of each emitter, W/m2. `rays` go to each light that
+    /// has a body.
+    fn straight(&self, probe: &Probe, rays: u32, offset: [f64; 2]) -> (Direct, Vec<f64>) {
+        let model = self.grounds.model;
+        let from_m = probe.position_m + probe.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
+        let (mut sum, mut row) = (Direct::default(), vec![0.0; model.shining.len()]);
+        for shining in self.lamps() {
+            let of_lamp = direct(model, from_m, probe.normal, shining.emitter, rays, offset);
+            sum.value_w_m2 += of_lamp.value_w_m2;
+            sum.flux_w_m2 += of_lamp.flux_w_m2;
+            row[shining.emitter] += of_lamp.value_w_m2;
+        }
+        (sum, row)
+    }
+
+    /// The field of readings that each have a row of shares.
+    fn field(&self, answers: Vec<(Reading, Vec<f64>)>, settings: &Settings) -> Field {
+        let (readings, rows): (Vec<Reading>, Vec<Vec<f64>>) = answers.into_iter().unzip();
+        let emitters = self.grounds.model.shining.len();
+        let shares = settings.shares.then(|| Shares { emitters, values_w_m2: rows.concat() });
+        Field { readings, warnings: self.warnings.clone(), shares }
     }
 
     /// What became of a sensor at that node with that value.

@@ -13,10 +13,10 @@
 use super::Network;
 use super::lines::Line;
 use super::walk::End;
-use crate::flow::direct::direct;
+use crate::flow::direct::Direct;
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Field, Reading, Settings, Shares};
+use crate::light::{Field, Reading, Settings};
 use crate::model::Probe;
 use glam::{DVec3, Vec3};
 use petgraph::graph::NodeIndex;
@@ -47,7 +47,7 @@ const PROBE_OFFSETS: u64 = 1 << 45;
 /// The diffuse field in the zones.
 #[derive(Debug, Clone, Default)]
 pub struct Tracks {
-    /// Sum over the lines of weight times length, `w l`, m3: half of twice the volume.
+    /// Sum over the lines of weight times length, `w l`, m3: twice the zone's volume.
     pub track_m3: Vec<f64>,
     /// The middle of each zone, as the lines have it, metres.
     middles_m: Vec<Vec3>,
@@ -227,12 +227,7 @@ pub fn read(
         .collect();
     progress.advance(probes.len() as u64);
     progress.end();
-    let (readings, rows): (Vec<Reading>, Vec<Vec<f64>>) = answers?.into_iter().unzip();
-    let shares = settings.shares.then(|| Shares {
-        emitters: network.grounds.model.shining.len(),
-        values_w_m2: rows.into_iter().flatten().collect(),
-    });
-    Ok(Field { readings, warnings: network.warnings.clone(), shares })
+    Ok(network.field(answers?, settings))
 }
 
 fn at_probe(
@@ -243,18 +238,7 @@ fn at_probe(
     offset: [f64; 2],
 ) -> (Reading, Vec<f64>) {
     let grounds = &network.grounds;
-    let model = grounds.model;
-    let lamps = model.shining.len();
-    let mut row = vec![0.0; lamps];
-    let (mut value_w_m2, mut flux_w_m2) = (0.0, DVec3::ZERO);
-    let from_m = probe.position_m + probe.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
-    for shining in network.lamps() {
-        let straight = direct(model, from_m, probe.normal, shining.emitter, DIRECT_RAYS, offset);
-        value_w_m2 += straight.value_w_m2;
-        flux_w_m2 += straight.flux_w_m2;
-        row[shining.emitter] += straight.value_w_m2;
-    }
-
+    let (Direct { mut value_w_m2, mut flux_w_m2 }, mut row) = network.straight(probe, DIRECT_RAYS, offset);
     let zone = grounds.zones.at(node.index() as u32, probe.position_m);
     let around = tracks.around(zone, probe.position_m);
     let columns = network.reflected_w_m2.len();
@@ -283,7 +267,7 @@ fn at_probe(
     };
     value_w_m2 += worth * all_w_m2;
     flux_w_m2 += hemisphere_w_m2;
-    if columns == lamps {
+    if columns == row.len() {
         // What the mean makes of all together, each column has its part of by the plain mean.
         let plain =
             |column: usize| around.iter().map(|&(zone, part)| part * tracks.scalar_w_m2[column][zone]).sum::<f64>();
