@@ -5,6 +5,7 @@
 //! Radians inside, degrees in files and on the command line.
 
 pub mod term;
+pub mod hosek;
 
 use glam::DVec3;
 use std::f64::consts::TAU;

@@ -16,7 +16,7 @@ const LEAST_SPREAD: f64 = 1e-4;
 
 /// One sky, or one colour channel of it, as the product that Perez and Hosek write:
 ///
-/// `weight (1 + a exp(b / (max(cos z, floor) + lift))) (k + c exp(d g) + e cos^2 g + f chi(h, g) + i sqrt(cos z))`
+/// `weight max(least, 1 + a exp(b / (max(cos z, floor) + lift))) (k + c exp(d g) + e cos^2 g + f chi(h, g) + i sqrt(cos z))`
 ///
 /// with `z` the angle from the zenith, `g` the angle from the sun, and
 /// `chi(h, g) = (1 + cos^2 g) / (1 + h^2 - 2 h cos g)^(3/2)`; below 0 it is 0.
@@ -30,6 +30,9 @@ pub struct Term {
     pub a: f64,
     /// See `a`.
     pub b: f64,
+    /// What that factor is kept above, so that it and the next, both negative, make no light: 0, or `-inf` where the model
+    /// means them to.
+    pub least: f64,
     /// Least cosine of the angle from the zenith that is told apart.
     pub floor: f64,
     /// What is added to that cosine.
@@ -62,6 +65,7 @@ impl Term {
         weight: 0.0,
         a: 0.0,
         b: 0.0,
+        least: 0.0,
         floor: 0.01,
         lift: 0.0,
         k: 0.0,
@@ -77,7 +81,7 @@ impl Term {
     pub fn radiance(&self, direction: DVec3) -> f64 {
         let cos_zenith = direction.z.max(0.0);
         let cos_sun = direction.dot(self.towards_sun).clamp(-1.0, 1.0);
-        let horizon = 1.0 + self.a * (self.b / (cos_zenith.max(self.floor) + self.lift)).exp();
+        let horizon = (1.0 + self.a * (self.b / (cos_zenith.max(self.floor) + self.lift)).exp()).max(self.least);
         let spread = (1.0 + self.h * self.h - 2.0 * self.h * cos_sun).max(LEAST_SPREAD);
         let glow = (1.0 + cos_sun * cos_sun) / (spread * spread.sqrt());
         let around_sun = self.k
@@ -90,7 +94,7 @@ impl Term {
 }
 
 /// Terms worked on at once: two vectors of the baseline target, one of wider ones.
-const LANES: usize = 8;
+pub const LANES: usize = 8;
 type Lanes = [f32; LANES];
 
 /// Many terms, for their sum in many directions.
@@ -112,6 +116,7 @@ struct Block {
     weight: Lanes,
     a: Lanes,
     b: Lanes,
+    least: Lanes,
     floor: Lanes,
     lift: Lanes,
     k: Lanes,
@@ -140,6 +145,11 @@ impl Skies {
         Self { blocks, has_glow: terms.iter().any(|term| term.f != 0.0) }
     }
 
+    /// A sum of 0 for each term, in their order, padded to whole lanes.
+    pub fn no_sums(&self) -> Vec<[f64; LANES]> {
+        vec![[0.0; LANES]; self.blocks.len()]
+    }
+
     /// All that does not depend on the azimuth, at an elevation, radians from 0 to a quarter turn.
     pub fn row(&self, elevation_rad: f64) -> Row<'_> {
         let (sin_elevation, cos_elevation) = elevation_rad.max(0.0).sin_cos();
@@ -159,8 +169,8 @@ impl Row<'_> {
         if self.skies.has_glow { self.sum::<true>(direction) } else { self.sum::<false>(direction) }
     }
 
-    /// Adds `share` of each sky towards an azimuth to that sky's own sum, in the order of the terms.
-    fn add_each(&self, azimuth_rad: f64, share: f64, sums: &mut [[f64; LANES]]) {
+    /// Adds `share` of each sky towards an azimuth to that sky's own sum of [`Skies::no_sums`].
+    pub fn add_each(&self, azimuth_rad: f64, share: f64, sums: &mut [[f64; LANES]]) {
         let (sin_azimuth, cos_azimuth) = azimuth_rad.sin_cos();
         let direction = [sin_azimuth * self.cos_elevation, cos_azimuth * self.cos_elevation, self.sin_elevation];
         let direction = direction.map(|along| along as f32);
@@ -195,6 +205,7 @@ impl Block {
             weight: all(|term| term.weight),
             a: all(|term| term.a),
             b: all(|term| term.b),
+            least: all(|term| term.least),
             floor: all(|term| term.floor),
             lift: all(|term| term.lift),
             k: all(|term| term.k),
@@ -211,7 +222,7 @@ impl Block {
     fn at_height(&self, cos_zenith: f32, root: f32) -> (Lanes, Lanes) {
         let factor = each(|lane| {
             let height = larger(cos_zenith, self.floor[lane]) + self.lift[lane];
-            self.weight[lane] * (1.0 + self.a[lane] * exp(self.b[lane] / height))
+            self.weight[lane] * larger(1.0 + self.a[lane] * exp(self.b[lane] / height), self.least[lane])
         });
         (factor, each(|lane| self.k[lane] + self.i[lane] * root))
     }
@@ -301,7 +312,7 @@ mod tests {
             Term { towards_sun: sun(step), weight: 1.0 + x, c: 3.0 * x, d: -3.0 + 0.1 * x, e: 0.05 * x, ..of_perez }
         };
         let hosek = |step: u32| {
-            let of_hosek = Term { floor: 0.0, lift: 0.01, k: -0.4, i: 0.6, f: 0.08, h: 0.6, ..perez(step) };
+            let of_hosek = Term { least: f64::NEG_INFINITY, floor: 0.0, lift: 0.01, k: -0.4, i: 0.6, f: 0.08, h: 0.6, ..perez(step) };
             Term { d: -5.0, c: 2.0, ..of_hosek }
         };
         (0..101).map(perez).chain((0..50).map(hosek)).collect()
