@@ -4,6 +4,8 @@
 //! north, z up. A scene that is turned against true north turns them itself (`north_deg` of its site).
 //! Radians inside, degrees in files and on the command line.
 
+pub mod perez;
+
 use glam::DVec3;
 use std::f64::consts::TAU;
 
