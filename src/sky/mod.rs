@@ -4,8 +4,17 @@
 //! north, z up. A scene that is turned against true north turns them itself (`north_deg` of its site).
 //! Radians inside, degrees in files and on the command line.
 
-pub mod term;
+pub mod clear;
+pub mod dome;
+pub mod events;
+pub mod facade;
 pub mod hosek;
+pub mod map;
+pub mod perez;
+pub mod simple_sun;
+pub mod steps;
+pub mod sun;
+pub mod term;
 
 use glam::DVec3;
 use std::f64::consts::TAU;
