@@ -8,12 +8,6 @@
 //! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
 
 pub mod clear;
-pub mod events;
-pub mod facade;
-pub mod simple_sun;
-pub mod sun;
-
-pub mod clear;
 pub mod dome;
 pub mod events;
 pub mod facade;
@@ -24,6 +18,7 @@ pub mod simple_sun;
 pub mod steps;
 pub mod sun;
 pub mod term;
+pub mod weather;
 
 use glam::DVec3;
 use std::f64::consts::TAU;
