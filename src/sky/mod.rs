@@ -5,6 +5,7 @@
 //! Radians inside, degrees in files and on the command line.
 
 pub mod perez;
+pub mod weather;
 
 use glam::DVec3;
 use std::f64::consts::TAU;
