@@ -3,8 +3,21 @@
 //! Azimuths run clockwise from true north, elevations up from the horizon; directions are unit vectors with x east, y true
 //! north, z up. A scene that is turned against true north turns them itself (`north_deg` of its site).
 //! Radians inside, degrees in files and on the command line.
+//!
+//! [`sun`] says where the sun stands, [`events`] when it rises and sets, [`facade`] how it meets a wall, [`clear`] how strong
+//! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
 
+pub mod clear;
+pub mod dome;
+pub mod events;
+pub mod facade;
+pub mod hosek;
+pub mod map;
 pub mod perez;
+pub mod simple_sun;
+pub mod steps;
+pub mod sun;
+pub mod term;
 pub mod weather;
 
 use glam::DVec3;

@@ -34,7 +34,7 @@ const DIMMEST: f64 = 0.2;
 const LEAST_ZENITH_RAD: f64 = 3.0 * PI / 180.0;
 
 /// The least cosine of a direction's zenith angle: 0.6 degrees above the horizon, where the formula would divide by 0.
-const LEAST_COS_ZENITH: f64 = 0.01;
+pub const LEAST_COS_ZENITH: f64 = 0.01;
 
 /// One row of the table: for each parameter the four numbers of its dependence on brightness and the sun's zenith angle.
 struct Bin {

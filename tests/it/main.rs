@@ -37,3 +37,6 @@ mod cancel;
 
 /// One set of laws of physics, for every estimator.
 mod conformance;
+
+/// The sun against SPA's own program, almanacs and published tables; clear skies against pvlib.
+mod sun;

@@ -13,7 +13,7 @@
 //! year in the middle between two leap years is taken, or a leap year where there is a 29 February.
 
 use super::missing::named;
-use super::{Row, Weather, bounded, date, decimal, from_rows, irradiance, month_and_day, place, whole};
+use super::{Row, Weather, bounded, date, from_rows, irradiance, month_and_day, place, whole};
 use crate::scene::error::{Kind, SceneError};
 use crate::scene::input::{Input, Line, Lines, shown, text, without_mark, words};
 use jiff::SignedDuration;
@@ -55,13 +55,16 @@ pub fn read_wea(input: &Input) -> Result<Weather, SceneError> {
         header_value(&line, key).map(|value| (line.number, value)).map_err(|kind| input.error(line.number, kind))
     };
     let (_, name) = value("place")?;
-    let mut degrees = |key| {
-        let (number, value) = value(key)?;
-        decimal(value, key).map(|value| (number, value)).map_err(|kind| input.error(number, kind))
+    let mut number = |key, range, bound| {
+        let (line, value) = value(key)?;
+        bounded(value, key, range, bound).map_err(|kind| input.error(line, kind))
     };
-    let [latitude, longitude, zone, elevation] =
-        [degrees("latitude")?, degrees("longitude")?, degrees("time_zone")?, degrees("site_elevation")?];
-    let place = place_of(input, latitude, longitude, zone, elevation)?;
+    let latitude_deg = number("latitude", [-90.0, 90.0], "-90 to 90 degrees")?;
+    let west_deg = number("longitude", [-180.0, 180.0], "-180 to 180 degrees")?;
+    let zone_west_deg = number("time_zone", [-210.0, 180.0], "-210 to 180 degrees, west positive")?;
+    let altitude_m = number("site_elevation", [-1000.0, 9999.9], "-1000 to 9999.9 m")?;
+    let place = place(latitude_deg, -west_deg, -zone_west_deg / 15.0, altitude_m);
+    let place = place.map_err(|kind| input.error(None, kind))?;
     let (number, units) = value("weather_data_file_units")?;
     let horizontal = is_horizontal(units).map_err(|kind| input.error(number, kind))?;
 
@@ -92,26 +95,6 @@ fn header_value<'a>(line: &Line<'a>, key: &str) -> Result<&'a [u8], Kind> {
     let wrong = || Kind::Syntax { expected: format!("{key} and its value"), found: shown(bytes) };
     let value = bytes.strip_prefix(key.as_bytes()).ok_or_else(wrong)?;
     if value.first().is_some_and(u8::is_ascii_whitespace) { Ok(value.trim_ascii()) } else { Err(wrong()) }
-}
-
-/// The place, from west-positive degrees; the errors name their lines.
-fn place_of(
-    input: &Input,
-    latitude: (usize, f64),
-    longitude: (usize, f64),
-    zone: (usize, f64),
-    elevation: (usize, f64),
-) -> Result<crate::sky::Place, SceneError> {
-    // Each alone first, so that an error stands in its own line.
-    for (line, place) in [
-        (latitude.0, place(latitude.1, 0.0, 0.0, 0.0)),
-        (longitude.0, place(0.0, -longitude.1, 0.0, 0.0)),
-        (zone.0, place(0.0, 0.0, -zone.1 / 15.0, 0.0)),
-        (elevation.0, place(0.0, 0.0, 0.0, elevation.1)),
-    ] {
-        place.map_err(|kind| input.error(line, kind))?;
-    }
-    place(latitude.1, -longitude.1, -zone.1 / 15.0, elevation.1).map_err(|kind| input.error(None, kind))
 }
 
 /// Whether the units are those of direct irradiance on the horizontal.
