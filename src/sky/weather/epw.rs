@@ -123,7 +123,8 @@ fn read_location(line: &[u8]) -> Result<(String, Place), Kind> {
     }
     let field = |index: usize| fields.get(index).map(Cow::as_ref).unwrap_or_default();
     let number = |index, what| decimal(field(index), what);
-    let place = place(number(6, "latitude")?, number(7, "longitude")?, number(8, "time zone")?, number(9, "elevation")?)?;
+    let place =
+        place(number(6, "latitude")?, number(7, "longitude")?, number(8, "time zone")?, number(9, "elevation")?)?;
     let names = (1..4).map(|index| text(field(index))).filter(|name| !name.is_empty());
     Ok((names.collect::<Vec<_>>().join(", "), place))
 }

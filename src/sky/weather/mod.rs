@@ -161,6 +161,7 @@ struct Row {
 
 /// The weather of rows.
 fn from_rows(name: String, place: Place, rows: &[Row], mut warnings: Vec<String>) -> Weather {
+    let name = name.chars().filter(|letter| !letter.is_control()).collect();
     warnings.extend(zone_warning(&place));
     let hours = missing::completed(&place, rows, &mut warnings);
     Weather { name, place, hours, warnings }

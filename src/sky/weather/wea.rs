@@ -103,7 +103,8 @@ fn is_horizontal(units: &[u8]) -> Result<bool, Kind> {
         1 => Ok(false),
         2 => Ok(true),
         _ => Err(Kind::Contradiction(
-            "weather_data_file_units 3 are illuminances, which do not say how much power there is; 1 and 2 can be read".into(),
+            "weather_data_file_units 3 are illuminances, which do not say how much power there is; 1 and 2 can be read"
+                .into(),
         )),
     }
 }
@@ -144,7 +145,8 @@ fn placed(input: &Input, records: &[Record], horizontal: bool) -> Result<Vec<Row
     };
     let middles = records.iter().map(middle).collect::<Result<Vec<_>, _>>()?;
 
-    // The shortest distance is the length of all. (Hour 24 of a day and hour 0 of the next are the same.)
+    // The shortest distance is the length of all. (Hour 24 of a day and hour 0 of the next are the same
+    // moment.)
     let mut length_s = LONGEST_S;
     for (pair, record) in middles.windows(2).zip(records.iter().skip(1)) {
         let [before, next] = pair else { continue };
@@ -159,6 +161,8 @@ fn placed(input: &Input, records: &[Record], horizontal: bool) -> Result<Vec<Row
         }
         length_s = length_s.min(distance_s);
     }
+
+    let length_s = snapped_s(length_s);
 
     let row = |(record, middle): (&Record, DateTime)| {
         let Record { line, direct, diffuse, .. } = *record;
@@ -175,6 +179,13 @@ fn placed(input: &Input, records: &[Record], horizontal: bool) -> Result<Vec<Row
     Ok(records.iter().zip(middles).map(row).collect())
 }
 
+/// The part of an hour nearest to a length that rounded stamps gave, seconds; the length itself where none is near.
+fn snapped_s(length_s: i64) -> i64 {
+    let parts_s = [60, 30, 20, 15, 12, 10, 6, 5, 4, 3, 2, 1].map(|minutes| minutes * 60);
+    let near = |part_s: &i64| (part_s - length_s).abs() * 20 < *part_s;
+    parts_s.into_iter().find(near).unwrap_or(length_s)
+}
+
 /// What to say of time between the first and the last row that no row covers.
 fn gaps(rows: &[Row]) -> Option<String> {
     let mut lines = Vec::new();
@@ -182,7 +193,8 @@ fn gaps(rows: &[Row]) -> Option<String> {
     for pair in rows.windows(2) {
         let [before, next] = pair else { continue };
         let between_h = next.start.duration_since(before.start).as_secs_f64() / 3600.0 - before.length_h;
-        if between_h > 1e-9 {
+        // Less comes from rounded stamps.
+        if between_h > 0.1 * before.length_h {
             gap_h += between_h;
             lines.push(next.line);
         }
