@@ -245,8 +245,9 @@ proptest! {
         let lifted_deg = (apparent.elevation_rad - exact.elevation_rad).to_degrees();
         prop_assert!((-0.001..0.7).contains(&lifted_deg), "refraction of {lifted_deg} degrees");
         let off_deg = exact.towards().angle_between(simple.towards()).to_degrees();
-        // The formula knows neither leap years nor zones: it is off by up to a day of the sun's way along the ecliptic.
-        let most_deg = if time.year() < 2030 && place.utc_offset_h >= -12.0 { 1.2 } else { 1.35 };
+        // The formula knows neither leap years nor zones. An hourly scan finds at most 1.18 degrees in UTC-6 by 2029, 1.31 in
+        // UTC-14, and 1.37 by 2050; it is worst in years after leap years.
+        let most_deg = if time.year() < 2030 && place.utc_offset_h >= -6.0 { 1.2 } else { 1.4 };
         prop_assert!(off_deg < most_deg, "{exact:?} and {simple:?}: {off_deg} degrees");
 
         match shadow_angles(apparent, facade) {
