@@ -5,6 +5,7 @@
 
 pub mod chart;
 pub mod curves;
+pub mod exposure;
 pub mod field;
 pub mod graphml;
 pub mod plan;

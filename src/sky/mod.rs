@@ -8,10 +8,19 @@
 //! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
 
 pub mod clear;
+pub mod dome;
 pub mod events;
 pub mod facade;
+pub mod hosek;
+pub mod lit;
+pub mod map;
+pub mod perez;
 pub mod simple_sun;
+pub mod site;
+pub mod steps;
 pub mod sun;
+pub mod term;
+pub mod weather;
 
 use glam::DVec3;
 use std::f64::consts::TAU;

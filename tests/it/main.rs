@@ -40,3 +40,6 @@ mod conformance;
 
 /// The sun against SPA's own program, almanacs and published tables; clear skies against pvlib.
 mod sun;
+
+/// Weather files, and the sky of a year against Radiance.
+mod weather;
