@@ -4,6 +4,7 @@
 //! target and renames, so that a failed or interrupted run leaves nothing half-written.
 
 pub mod chart;
+pub mod curves;
 pub mod exposure;
 pub mod field;
 pub mod graphml;
@@ -13,6 +14,7 @@ pub mod reference;
 pub mod skeleton_json;
 pub mod stress;
 pub mod strips;
+pub mod sun_path;
 pub mod swc;
 pub mod voxels;
 
