@@ -115,8 +115,7 @@ fn horizontal(terms: &[Term]) -> Vec<f64> {
     let facing_north: Vec<Term> = terms
         .iter()
         .map(|term| {
-            let towards_sun =
-                DVec3::new(0.0, term.towards_sun.x.hypot(term.towards_sun.y), term.towards_sun.z);
+            let towards_sun = DVec3::new(0.0, term.towards_sun.x.hypot(term.towards_sun.y), term.towards_sun.z);
             Term { towards_sun, ..*term }
         })
         .collect();

@@ -312,7 +312,16 @@ mod tests {
             Term { towards_sun: sun(step), weight: 1.0 + x, c: 3.0 * x, d: -3.0 + 0.1 * x, e: 0.05 * x, ..of_perez }
         };
         let hosek = |step: u32| {
-            let of_hosek = Term { least: f64::NEG_INFINITY, floor: 0.0, lift: 0.01, k: -0.4, i: 0.6, f: 0.08, h: 0.6, ..perez(step) };
+            let of_hosek = Term {
+                least: f64::NEG_INFINITY,
+                floor: 0.0,
+                lift: 0.01,
+                k: -0.4,
+                i: 0.6,
+                f: 0.08,
+                h: 0.6,
+                ..perez(step)
+            };
             Term { d: -5.0, c: 2.0, ..of_hosek }
         };
         (0..101).map(perez).chain((0..50).map(hosek)).collect()
@@ -332,7 +341,10 @@ mod tests {
                     let direction = towards(azimuth, elevation);
                     let exact: f64 = some.iter().map(|term| term.radiance(direction)).sum();
                     let sum = row.radiance(azimuth);
-                    assert!((sum - exact).abs() <= 1e-5 * exact.max(half_way_up), "{sum} against {exact} at {elevation} {azimuth}");
+                    assert!(
+                        (sum - exact).abs() <= 1e-5 * exact.max(half_way_up),
+                        "{sum} against {exact} at {elevation} {azimuth}"
+                    );
                 }
             }
         }

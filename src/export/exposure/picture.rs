@@ -75,7 +75,8 @@ fn paint(sheet: &mut tiny_skia::Pixmap, map: &ExposureMap, radiance: &[f64], bri
     for y in 0..high {
         let within = covered(high - 1 - y, high, rows);
         for x in 0..wide {
-            let texels = within.clone().flat_map(|row| covered(x, wide, columns).map(move |column| row * columns + column));
+            let texels =
+                within.clone().flat_map(|row| covered(x, wide, columns).map(move |column| row * columns + column));
             let value = texels.map(|texel| radiance[texel]).fold(0.0, f64::max);
             let [red, green, blue] = colour(value, brightest);
             let at = (y + MARGINS[1] as usize) * sheet_width + x + MARGINS[0] as usize;

@@ -16,8 +16,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Columns, and rows but one, of the first grid.
 const FIRST: usize = 8;
 
-/// Doublings after which the grid is evaluated as a whole: 64 columns and 65 rows, 5.6 by 1.4 degrees.
-const WHOLE: u32 = 3;
+/// Doublings after which the grid is evaluated as a whole: 32 columns and 33 rows. As no cubic was tried there, the next
+/// level is evaluated as a whole too: 5.6 by 1.4 degrees.
+const WHOLE: u32 = 2;
 
 /// A sum of skies, sampled.
 #[derive(Debug)]
@@ -28,6 +29,8 @@ pub struct Samples {
     columns: usize,
     /// Elevations, the first the horizon and the last the zenith.
     rows: usize,
+    /// How far cubics were found off in each cell between four points, a share; 0 where the level before was smooth.
+    rough: Vec<f32>,
     /// Points that were evaluated rather than predicted.
     pub evaluated: usize,
 }
@@ -40,16 +43,15 @@ pub fn sample(skies: &Skies, size: [usize; 2], tolerance: f64, cancel: &Cancel) 
     let doublings = size.map(|texels| texels.div_ceil(FIRST).next_power_of_two().ilog2());
     let levels = doublings[0].max(doublings[1]).max(WHOLE);
     let side = FIRST << WHOLE;
-    let (mut samples, mut rough) = whole(skies, side, side + 1, cancel)?;
+    let mut samples = whole(skies, side, side + 1, cancel)?;
     for _ in WHOLE..levels {
-        (samples, rough) = samples.doubled(skies, &rough, tolerance, cancel)?;
+        samples = samples.doubled(skies, tolerance, cancel)?;
     }
     Ok(samples)
 }
 
-/// Evaluates a grid of so many columns and rows as a whole. Beside it, how far the cubics are off, a share for each cell: none
-/// was tried, so all are rough.
-fn whole(skies: &Skies, columns: usize, rows: usize, cancel: &Cancel) -> Result<(Samples, Vec<f32>), Cancelled> {
+/// Evaluates a grid of so many columns and rows as a whole; no cubic was tried, so all cells are rough.
+fn whole(skies: &Skies, columns: usize, rows: usize, cancel: &Cancel) -> Result<Samples, Cancelled> {
     let values: Result<Vec<Vec<f64>>, Cancelled> = (0..rows)
         .into_par_iter()
         .map(|row| {
@@ -58,11 +60,18 @@ fn whole(skies: &Skies, columns: usize, rows: usize, cancel: &Cancel) -> Result<
             Ok((0..columns).map(|column| at_row.radiance(azimuth_rad(column, columns))).collect())
         })
         .collect();
-    let samples = Samples { values: values?.concat(), columns, rows, evaluated: columns * rows };
-    Ok((samples, vec![f32::INFINITY; columns * (rows - 1)]))
+    let rough = vec![f32::INFINITY; columns * (rows - 1)];
+    Ok(Samples { values: values?.concat(), columns, rows, rough, evaluated: columns * rows })
 }
 
 impl Samples {
+    /// How far off cubics were found about an azimuth and an elevation, radians: a share.
+    pub fn off(&self, azimuth_rad: f64, elevation_rad: f64) -> f64 {
+        let column = (azimuth_rad.rem_euclid(TAU) / TAU * self.columns as f64) as usize % self.columns;
+        let row = (elevation_rad / FRAC_PI_2 * (self.rows - 1) as f64) as usize;
+        f64::from(self.rough[row.min(self.rows - 2) * self.columns + column])
+    }
+
     /// The value at an azimuth and an elevation, radians: the cubic through the four nearest columns and rows.
     pub fn at(&self, azimuth_rad: f64, elevation_rad: f64) -> f64 {
         let across = azimuth_rad.rem_euclid(TAU) / TAU * self.columns as f64;
@@ -91,19 +100,13 @@ impl Samples {
     }
 
     /// The grid of half the spacing.
-    fn doubled(
-        &self,
-        skies: &Skies,
-        rough: &[f32],
-        tolerance: f64,
-        cancel: &Cancel,
-    ) -> Result<(Self, Vec<f32>), Cancelled> {
+    fn doubled(&self, skies: &Skies, tolerance: f64, cancel: &Cancel) -> Result<Self, Cancelled> {
         let (columns, rows) = (2 * self.columns, 2 * self.rows - 1);
         let finer: Result<Vec<FineRow>, Cancelled> = (0..rows)
             .into_par_iter()
             .map(|row| {
                 cancel.check()?;
-                Ok(self.fine_row(skies, rough, tolerance, row))
+                Ok(self.fine_row(skies, tolerance, row))
             })
             .collect();
         let finer = finer?;
@@ -119,17 +122,17 @@ impl Samples {
         let rough = rough.collect();
         let evaluated = self.evaluated + finer.iter().map(|row| row.evaluated).sum::<usize>();
         let values = finer.into_iter().flat_map(|row| row.values).collect();
-        Ok((Self { values, columns, rows, evaluated }, rough))
+        Ok(Self { values, columns, rows, rough, evaluated })
     }
 
     /// One row of the finer grid: first, in a row between two of this grid, the points below and above one of it; then those
     /// between two columns.
-    fn fine_row(&self, skies: &Skies, rough: &[f32], tolerance: f64, row: usize) -> FineRow {
+    fn fine_row(&self, skies: &Skies, tolerance: f64, row: usize) -> FineRow {
         let (columns, rows) = (2 * self.columns, 2 * self.rows - 1);
         let mut fine = FineRow { values: vec![0.0; columns], off: vec![0.0; columns], evaluated: 0 };
         let mut sums: Option<Row> = None;
         let mut settle = |fine: &mut FineRow, column: usize, predicted: f64| {
-            if self.roughness(rough, row, column) <= tolerance as f32 {
+            if self.roughness(row, column) <= tolerance as f32 {
                 fine.values[column] = predicted.max(0.0);
                 return;
             }
@@ -158,10 +161,10 @@ impl Samples {
     }
 
     /// How far off cubics were found in the cells of this grid around a point of the finer one.
-    fn roughness(&self, rough: &[f32], fine_row: usize, fine_column: usize) -> f32 {
+    fn roughness(&self, fine_row: usize, fine_column: usize) -> f32 {
         let rows = [fine_row.saturating_sub(1) / 2, (fine_row / 2).min(self.rows - 2)];
         let columns = [(fine_column + 2 * self.columns - 1) % (2 * self.columns) / 2, fine_column / 2];
-        let cells = rows.into_iter().flat_map(|row| columns.map(|column| rough[row * self.columns + column]));
+        let cells = rows.into_iter().flat_map(|row| columns.map(|column| self.rough[row * self.columns + column]));
         cells.fold(0.0, f32::max)
     }
 }

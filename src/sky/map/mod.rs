@@ -13,13 +13,15 @@
 
 pub mod diffuse;
 pub mod levels;
+#[cfg(test)]
+mod tests;
 
 use super::dome::{Haze, SkyModel, skies};
 use super::steps::{Steps, Totals};
 use super::term::{Skies, Term};
 use super::{Sun, towards};
 use crate::job::{Cancel, Cancelled, Progress};
-use diffuse::sample;
+use diffuse::{Samples, sample};
 use glam::DVec3;
 use jiff::civil::DateTime;
 use rayon::prelude::*;
@@ -185,28 +187,34 @@ impl ExposureMap {
     fn fill_diffuse(&mut self, sum: &Skies, tolerance: Option<f64>, cancel: &Cancel) -> Result<(), Cancelled> {
         let [columns, rows] = self.size;
         let samples = tolerance.map(|tolerance| sample(sum, self.size, tolerance, cancel)).transpose()?;
-        let radiance: Result<Vec<Vec<f64>>, Cancelled> = (0..rows)
+        let is_smooth = |samples: &Samples, (azimuth_rad, elevation_rad)| {
+            tolerance.is_some_and(|tolerance| samples.off(azimuth_rad, elevation_rad) <= tolerance)
+        };
+        let rows: Result<Vec<(Vec<f32>, usize)>, Cancelled> = (0..rows)
             .into_par_iter()
             .map(|row| {
                 cancel.check()?;
-                let at = |column: usize| self.middle_rad(column, row);
-                if let Some(samples) = &samples {
-                    let texel = |column| samples.at(at(column).0, at(column).1);
-                    return Ok((0..columns).map(texel).collect());
-                }
-                let sums = sum.row(at(0).1);
-                Ok((0..columns).map(|column| sums.radiance(at(column).0)).collect())
+                let solid_angle_sr = self.solid_angle_sr(row);
+                let (mut sums, mut evaluated) = (None, 0);
+                let texel = |column: usize| {
+                    let (azimuth_rad, elevation_rad) = self.middle_rad(column, row);
+                    let smooth = samples.as_ref().filter(|samples| is_smooth(samples, (azimuth_rad, elevation_rad)));
+                    let radiance = smooth.map(|samples| samples.at(azimuth_rad, elevation_rad)).unwrap_or_else(|| {
+                        evaluated += 1;
+                        sums.get_or_insert_with(|| sum.row(elevation_rad)).radiance(azimuth_rad)
+                    });
+                    (radiance * solid_angle_sr) as f32
+                };
+                let energies = (0..columns).map(texel).collect();
+                Ok((energies, evaluated))
             })
             .collect();
-        let radiance = radiance?;
-        let energies = radiance.iter().enumerate().flat_map(|(row, radiance)| {
-            let solid_angle_sr = self.solid_angle_sr(row);
-            radiance.iter().map(move |radiance| (radiance * solid_angle_sr) as f32)
-        });
-        self.diffuse_kwh_m2 = energies.collect();
+        let rows = rows?;
+        let evaluated = rows.iter().map(|(_, evaluated)| evaluated).sum::<usize>();
+        self.diffuse_kwh_m2 = rows.into_iter().flat_map(|(energies, _)| energies).collect();
         self.check = match samples {
-            None => Check { evaluated: columns * rows, ..Check::default() },
-            Some(samples) => Check { evaluated: samples.evaluated, ..self.checked(sum) },
+            None => Check { evaluated, ..Check::default() },
+            Some(samples) => Check { evaluated: samples.evaluated + evaluated, ..self.checked(sum) },
         };
         Ok(())
     }
@@ -219,7 +227,8 @@ impl ExposureMap {
         let errors: Vec<f64> = (0..CHECKED)
             .into_par_iter()
             .filter_map(|number| {
-                let place = |axis: usize| ((f64::from(number) * STRIDES[axis]).fract() * self.size[axis] as f64) as usize;
+                let place =
+                    |axis: usize| ((f64::from(number) * STRIDES[axis]).fract() * self.size[axis] as f64) as usize;
                 let (column, row) = (place(0), place(1));
                 let energy = *self.diffuse_kwh_m2.get(row * self.size[0] + column)?;
                 let (azimuth_rad, elevation_rad) = self.middle_rad(column, row);
