@@ -27,6 +27,9 @@ use std::path::Path;
 /// Endings of the weather formats that can be read.
 pub const FORMATS: &str = "epw, wea";
 
+/// Most irradiance that is accepted, W/m2.
+const MOST_W_M2: f64 = 1500.0;
+
 /// Hours between a place's zone and the one its longitude asks for beyond which a sign is likely to be wrong: no country
 /// keeps a zone further off.
 const FARTHEST_ZONE_H: f64 = 3.5;
@@ -192,7 +195,7 @@ fn zone_warning(place: &Place) -> Option<String> {
 
 /// The mean irradiance over a row, W/m2.
 fn irradiance(field: &[u8], what: &str) -> Result<f64, Kind> {
-    bounded(field, what, [0.0, 1500.0], "0 to 1500 W/m2")
+    bounded(field, what, [0.0, MOST_W_M2], "0 to 1500 W/m2")
 }
 
 /// A number within bounds.

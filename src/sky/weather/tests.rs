@@ -102,16 +102,14 @@ fn what_is_missing_is_found_from_the_others() {
     // With the sun up, GHI = DNI sin(elevation) + DHI. On 1 June, 12 to 13 h at 48 N, 11 E, the sun is at 64 degrees: sine
     // 0.897 (declination 22.0, hour angle about 4 degrees, by hand).
     let one = |ghi: &'static str, dni: &'static str, dhi: &'static str| {
-        let text = epw_text(1, 1, |number| [ghi, dni, dhi].map(|value| if number == 12 { value } else { "0" }.to_owned()));
+        let text =
+            epw_text(1, 1, |number| [ghi, dni, dhi].map(|value| if number == 12 { value } else { "0" }.to_owned()));
         let weather = epw(&text);
         (weather.hours[12], weather.warnings)
     };
     let (hour, warnings) = one("800", "9999", "100");
     assert!((hour.dni_w_m2 - 700.0 / 0.897).abs() < 3.0, "{hour:?}");
-    assert_eq!(
-        warnings,
-        ["direct normal radiation is missing in 1 row (line 16), found from the others and the sun"]
-    );
+    assert_eq!(warnings, ["direct normal radiation is missing in 1 row (line 16), found from the others and the sun"]);
     let (hour, _) = one("800", "600", "9999.0");
     assert!((hour.dhi_w_m2 - (800.0 - 600.0 * 0.897)).abs() < 3.0, "{hour:?}");
     // More direct light than all: none is diffuse.
@@ -147,17 +145,15 @@ fn many_missing_rows_are_named_by_the_first() {
 #[test]
 fn a_longitude_of_the_wrong_sign_is_told() {
     let text = epw_text(1, 1, plain).replace(",48,11,1,", ",48,-88,6,");
-    assert_eq!(
-        epw(&text).warnings,
-        ["the zone 6 h is 11.9 h off the longitude -88.00 degrees east: is a sign wrong?"]
-    );
+    assert_eq!(epw(&text).warnings, ["the zone 6 h is 11.9 h off the longitude -88.00 degrees east: is a sign wrong?"]);
     // Kiribati is at the date line, and a day ahead of its longitude.
     assert!(epw(&epw_text(1, 1, plain).replace(",48,11,1,", ",1.9,-157.4,14,")).warnings.is_empty());
 }
 
 #[test]
 fn a_wea_row_is_the_hour_around_its_stamp() {
-    let head = "place Here_DEU\nlatitude 48\nlongitude -11\ntime_zone -15\nsite_elevation 500\nweather_data_file_units ";
+    let head =
+        "place Here_DEU\nlatitude 48\nlongitude -11\ntime_zone -15\nsite_elevation 500\nweather_data_file_units ";
     let wea = |rest: &str| read(format!("{head}{rest}").as_bytes(), "a.wea").unwrap_or_else(|error| panic!("{error}"));
     let weather = wea("1\n6 1 12.500 600 100\n6 1 13.500 500 90 0.1 0.5\n");
     assert_eq!(weather.name, "Here_DEU");
