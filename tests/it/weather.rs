@@ -46,7 +46,7 @@ fn chicago_brings_what_its_file_says() {
     assert_eq!(weather.place, Place { altitude_m: 201.0, ..Place::from_degrees(41.98, -87.92, -6.0) });
     assert_eq!((weather.hours.len(), weather.warnings.len()), (8760, 0), "{:?}", weather.warnings);
     let sums = weather.sums();
-    let rounded = [sums.ghi_kwh_m2, sums.dni_kwh_m2, sums.dhi_kwh_m2].map(f64::round);
+    let rounded = [sums.ghi_kwh_m2.unwrap_or(0.0), sums.dni_kwh_m2, sums.dhi_kwh_m2].map(f64::round);
     assert_eq!(rounded, [1407.0, 1294.0, 660.0]);
     // A typical year: each month has its own.
     let years: std::collections::BTreeSet<i16> = weather.hours.iter().map(|hour| hour.start.year()).collect();
@@ -217,7 +217,7 @@ fn differences(ours: &[[f64; 9]], theirs: &[Vec<f64>], column: usize) -> (f64, f
 }
 
 /// The sun of the gendaymtx that made the figures (pyradiance 1.3.1), found from what its option `-D` writes: Cooper's
-/// declination, which is up to 1 degree off in October, and the equation of time of the short formula. Days of a common year.
+/// declination, which is about 1 degree off in October, and the equation of time of the short formula. Days of a common year.
 fn radiance_sun(place: &Place, time: jiff::civil::DateTime) -> Sun {
     let day = f64::from(jiff::civil::date(2001, time.month(), time.day()).day_of_year());
     let wave = |turns: f64, zero: f64, length: f64| (turns * PI * (day - zero) / length).sin();
