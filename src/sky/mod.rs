@@ -4,7 +4,11 @@
 //! north, z up. A scene that is turned against true north turns them itself (`north_deg` of its site).
 //! Radians inside, degrees in files and on the command line.
 
+pub mod colour;
+pub mod disc;
 pub mod hosek;
+pub mod picture;
+pub mod spectrum;
 
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -63,6 +67,11 @@ pub fn azimuth_elevation_rad(direction: DVec3) -> (f64, f64) {
     let flat = direction.x.hypot(direction.y);
     // A tiny negative angle becomes a whole turn in rounding.
     (if azimuth_rad < TAU { azimuth_rad } else { 0.0 }, direction.z.atan2(flat))
+}
+
+/// A number inside bounds; NaN becomes the lower one.
+fn within(value: f64, (low, high): (f64, f64)) -> f64 {
+    value.max(low).min(high)
 }
 
 #[cfg(test)]

@@ -37,3 +37,6 @@ mod cancel;
 
 /// One set of laws of physics, for every estimator.
 mod conformance;
+
+/// Sky models against an independent implementation.
+mod sky_colour;
