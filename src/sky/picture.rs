@@ -33,14 +33,15 @@ pub struct Picture {
     pub rgb: Vec<Option<[f32; 3]>>,
 }
 
-/// Hosek and Wilkie's RGB data are radiances weighted by the eye's curves, W/(m2 sr); this makes them kcd/m2.
+/// Hosek and Wilkie's RGB data are radiances weighted by the eye's curves, W/(m2 sr); this makes them kcd/m2. (Their
+/// spectral data, weighted so, give the same luminance within 0.4% on average, 6% at worst.)
 const KCD_PER_HOSEK: f64 = 0.683;
 
 /// Points across the sun's radius at which its brightness is asked.
 const POINTS_PER_RADIUS: f64 = 16.0;
 
 impl Picture {
-    /// Paints the sky. `eccentricity` is E0 of the day, for the sun's size and strength. 512 x 512 in about 20 ms.
+    /// Paints the sky. `eccentricity` is E0 of the day, for the sun's size and strength. 512 x 512 in about 30 ms on two cores.
     pub fn paint(sun: Sun, eccentricity: f64, atmosphere: &Atmosphere, colours: Colours, size_px: usize) -> Self {
         let towards_sun = sun.towards();
         let colour = sky_colour(sun, atmosphere, colours);
