@@ -4,6 +4,7 @@
 //! target and renames, so that a failed or interrupted run leaves nothing half-written.
 
 pub mod chart;
+pub mod exposure;
 pub mod field;
 pub mod graphml;
 pub mod plan;

@@ -10,7 +10,7 @@ use super::merge::{Part, merge};
 use super::read::{FORMATS, Format, RawMesh};
 use super::reference::{match_sensors, read_reference_csv};
 use super::sensors::{RawSensor, read_pts, read_sensors_csv};
-use super::{Light, Material, Scene, Sensor};
+use super::{Light, Material, Scene, Sensor, Site};
 use crate::job::{Cancel, Progress};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -59,6 +59,21 @@ impl Scene {
     }
 }
 
+impl Site {
+    /// The name and the site of a scene file, and nothing else of it: its meshes are not read. The weather file's path is
+    /// made whole, and the file is there.
+    ///
+    /// # Errors
+    /// As [`Scene::load`] for the scene file itself; a weather file that is not there.
+    pub fn load(path: &Path, progress: &dyn Progress, cancel: &Cancel) -> Result<(String, Option<Self>), SceneError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let loader = Loader { path, folder, progress, cancel };
+        let bytes = read_file(path, progress, cancel)?;
+        let description = read_scene_file(&loader.input(path, &bytes, 1.0))?;
+        Ok((loader.name(&description), loader.site(&description)?))
+    }
+}
+
 /// What [`Scene::load`] itself accepts.
 const FORMATS_AND_TOML: &str = "toml (a scene file), obj, gltf, glb, ply, stl";
 
@@ -85,9 +100,7 @@ impl Loader<'_> {
 
     /// Everything that the description names, put together.
     fn scene(&self, description: Description, bare: bool) -> Result<Scene, SceneError> {
-        let mut scene = Scene { bare, model: description.model, ..Scene::default() };
-        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        scene.name = description.name.clone().unwrap_or(stem);
+        let mut scene = Scene { bare, model: description.model, name: self.name(&description), ..Scene::default() };
 
         // Sensors and references before the meshes: their mistakes show at once, and not after minutes.
         let sensors = self.sensors(&description)?;
@@ -101,7 +114,7 @@ impl Loader<'_> {
                 Some((path.clone(), read_reference_csv(&self.input(&path, &bytes, 1.0))?))
             }
         };
-        self.site(&description, &mut scene)?;
+        scene.site = self.site(&description)?;
 
         let meshes = self.meshes(&description, bare)?;
         let (materials, numbers) = self.materials(&description, &meshes, &mut scene.warnings)?;
@@ -150,9 +163,15 @@ impl Loader<'_> {
         }
     }
 
-    fn site(&self, description: &Description, scene: &mut Scene) -> Result<(), SceneError> {
-        scene.site = description.site.clone();
-        if let Some(weather) = scene.site.as_mut().and_then(|site| site.weather.as_mut()) {
+    /// The name that the file gives the scene, or its own.
+    fn name(&self, description: &Description) -> String {
+        let stem = || self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        description.name.clone().unwrap_or_else(stem)
+    }
+
+    fn site(&self, description: &Description) -> Result<Option<Site>, SceneError> {
+        let mut site = description.site.clone();
+        if let Some(weather) = site.as_mut().and_then(|site| site.weather.as_mut()) {
             let path = self.folder.join(&*weather);
             if let Err(reason) = std::fs::metadata(&path) {
                 let kind = Kind::Named { what: "weather", file: weather.display().to_string(), reason };
@@ -160,7 +179,7 @@ impl Loader<'_> {
             }
             *weather = path;
         }
-        Ok(())
+        Ok(site)
     }
 
     /// All mesh files, in metres and Z up.

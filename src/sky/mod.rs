@@ -3,12 +3,31 @@
 //! Azimuths run clockwise from true north, elevations up from the horizon; directions are unit vectors with x east, y true
 //! north, z up. A scene that is turned against true north turns them itself (`north_deg` of its site).
 //! Radians inside, degrees in files and on the command line.
+//!
+//! [`sun`] says where the sun stands, [`events`] when it rises and sets, [`facade`] how it meets a wall, [`clear`] how strong
+//! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
+//!
+//! [`hosek`] is the brightness of a clear sky by direction, in RGB and by band, [`spectrum`] what beam and sky bring by
+//! wavelength, [`disc`] how the beam is spread over the sun, [`colour`] the sky's colour, [`picture`] a fisheye of it all.
 
+pub mod clear;
 pub mod colour;
 pub mod disc;
+pub mod dome;
+pub mod events;
+pub mod facade;
 pub mod hosek;
+pub mod lit;
+pub mod map;
+pub mod perez;
 pub mod picture;
+pub mod simple_sun;
+pub mod site;
 pub mod spectrum;
+pub mod steps;
+pub mod sun;
+pub mod term;
+pub mod weather;
 
 use glam::DVec3;
 use std::f64::consts::TAU;

@@ -3,13 +3,14 @@
 //! `tests/bad_input/expected.tsv` names a file and its error, one a line; `UPDATE_GOLDEN=1` writes it anew. What the
 //! system says of a file it cannot read is left out. `tests/bad_input/sound/` holds what the edits begin with.
 
-use lightvein::job::{Cancel, Quiet};
+use lightvein::job::{Cancel, Progress, Quiet};
 use lightvein::scene::file::read_scene_file;
 use lightvein::scene::input::Input;
 use lightvein::scene::read::{Format, RawMesh, mtl::read_mtl};
 use lightvein::scene::reference::read_reference_csv;
 use lightvein::scene::sensors::{read_pts, read_sensors_csv};
 use lightvein::scene::{Scene, SceneError};
+use lightvein::sky::weather::{Weather, WeatherFormat, epw::read_epw, wea::read_wea};
 use proptest::prelude::*;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -18,10 +19,19 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad_input")
 }
 
-/// The error of a scene without the folder it is in and without the system's words.
+/// Loads a file as what it is, a scene or weather, and gives its warnings.
+fn load(file: &str, progress: &dyn Progress) -> Result<Vec<String>, SceneError> {
+    let path = folder().join(file);
+    match WeatherFormat::of(&path) {
+        Some(_) => Weather::load(&path, progress, &Cancel::new()).map(|weather| weather.warnings),
+        None => Scene::load(&path, progress, &Cancel::new()).map(|scene| scene.warnings),
+    }
+}
+
+/// The error of a file without the folder it is in and without the system's words.
 fn answer(file: &str) -> String {
-    let error = match Scene::load(&folder().join(file), &Quiet, &Cancel::new()) {
-        Ok(scene) => panic!("{file} loads, with {:?}", scene.warnings),
+    let error = match load(file, &Quiet) {
+        Ok(warnings) => panic!("{file} loads, with {warnings:?}"),
         Err(error) => error.to_string(),
     };
     let inside = format!("{}/", folder().display());
@@ -53,7 +63,8 @@ fn every_broken_file_is_answered_by_one_line_that_names_the_place() {
         let name = entry.expect("a file").file_name().into_string().expect("a plain name");
         let beside = [".mtl", ".csv", ".pts"].iter().any(|ending| name.ends_with(ending));
         let listed = expected.lines().any(|line| line.split('\t').next() == Some(&name));
-        let known = ["expected.tsv", "make_binary.py", "sound", "folder.obj", "obj_wide.obj"].contains(&name.as_str());
+        let known = ["expected.tsv", "make_binary.py", "make_weather.py", "sound", "folder.obj", "obj_wide.obj"]
+            .contains(&name.as_str());
         assert!(beside || listed || known, "{name} is in no test");
     }
 }
@@ -62,7 +73,7 @@ fn every_broken_file_is_answered_by_one_line_that_names_the_place() {
 fn the_sound_files_load() {
     for entry in std::fs::read_dir(folder().join("sound")).expect("the sound files") {
         let path = entry.expect("a file").path();
-        if matches!(path.extension().and_then(|ending| ending.to_str()), Some("mtl" | "csv" | "pts")) {
+        if matches!(path.extension().and_then(|ending| ending.to_str()), Some("mtl" | "csv" | "pts" | "epw" | "wea")) {
             continue;
         }
         let scene = Scene::load(&path, &Quiet, &Cancel::new()).unwrap_or_else(|error| panic!("{error}"));
@@ -84,7 +95,7 @@ fn loading_can_be_cancelled() {
 #[derive(Default)]
 struct Open(std::sync::atomic::AtomicI64);
 
-impl lightvein::job::Progress for Open {
+impl Progress for Open {
     fn begin(&self, stage: &str, _total: u64) {
         let open = self.0.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
         assert_eq!(open, 0, "{stage} begins inside another stage");
@@ -101,11 +112,16 @@ impl lightvein::job::Progress for Open {
 fn stages_follow_each_other_and_end_also_in_failure() {
     let expected = std::fs::read_to_string(folder().join("expected.tsv")).expect("the list of broken files");
     let broken = expected.lines().filter_map(|line| line.split('\t').next());
-    for file in
-        broken.chain(["sound/box.toml", "sound/box.gltf", "sound/box.glb", "sound/box.stl", "sound/box_big.ply"])
-    {
+    for file in broken.chain([
+        "sound/box.toml",
+        "sound/box.gltf",
+        "sound/box.glb",
+        "sound/box.stl",
+        "sound/box_big.ply",
+        "sound/day.epw",
+    ]) {
         let open = Open::default();
-        let _ = Scene::load(&folder().join(file), &open, &Cancel::new());
+        let _ = load(file, &open);
         assert_eq!(open.0.into_inner(), 0, "{file} leaves a stage open");
     }
 }
@@ -254,6 +270,25 @@ fn the_readers_of_scenes_and_tables_survive_edits() {
     survives_edits("reference.csv", read_reference_csv, |rows| {
         assert!(rows.iter().all(|(_, reference)| reference.irradiance_w_m2 >= 0.0 && reference.stderr_w_m2 >= 0.0));
     });
+}
+
+/// What the readers promise of weather.
+fn check_weather(weather: Weather) {
+    let place = weather.place;
+    assert!(place.latitude_rad.abs() < 1.6 && place.longitude_rad.abs() < 3.2 && place.utc_offset_h.abs() <= 14.0);
+    for hour in &weather.hours {
+        let given = [hour.dni_w_m2, hour.dhi_w_m2, hour.ghi_w_m2.unwrap_or(0.0)];
+        assert!(given.iter().all(|irradiance| (0.0..=3000.0).contains(irradiance)), "{hour:?}");
+        assert!(hour.length_h > 0.0 && hour.length_h <= 1.0 && hour.end() > hour.start);
+    }
+    assert!(weather.warnings.iter().all(|warning| !warning.contains(char::is_control)));
+}
+
+#[test]
+fn the_readers_of_weather_survive_edits() {
+    survives_edits("day.epw", read_epw, check_weather);
+    survives_edits("day_crlf.epw", read_epw, check_weather);
+    survives_edits("day.wea", read_wea, check_weather);
 }
 
 #[test]

@@ -38,5 +38,11 @@ mod cancel;
 /// One set of laws of physics, for every estimator.
 mod conformance;
 
+/// The sun against SPA's own program, almanacs and published tables; clear skies against pvlib.
+mod sun;
+
+/// Weather files, and the sky of a year against Radiance.
+mod weather;
+
 /// Sky models against an independent implementation.
 mod sky_colour;
