@@ -12,6 +12,7 @@ pub mod plan;
 pub mod ply;
 pub mod reference;
 pub mod skeleton_json;
+pub mod sky_picture;
 pub mod stress;
 pub mod strips;
 pub mod sun_path;
