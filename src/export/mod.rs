@@ -10,6 +10,8 @@ pub mod field;
 pub mod graphml;
 pub mod plan;
 pub mod ply;
+#[cfg(feature = "cli")]
+pub mod png;
 pub mod reference;
 pub mod skeleton_json;
 pub mod sky_picture;

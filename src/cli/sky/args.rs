@@ -2,6 +2,8 @@
 
 use crate::scene::Site;
 use crate::sky::dome::SkyModel;
+use crate::sky::site::ClearSky;
+use crate::sky::spectrum::Band;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use jiff::civil::{Date, Time};
 use std::path::PathBuf;
@@ -38,6 +40,15 @@ pub struct SkyArgs {
     /// How the sky's light is spread; by default perez with weather, hosek without
     #[arg(long, value_parser = model())]
     pub model: Option<SkyModel>,
+    /// What a clear sky brings, without weather: ineichen by Linke's turbidity; spectral by the published transmittances
+    #[arg(long, value_parser = clear_sky())]
+    pub clear_sky: Option<ClearSky>,
+    /// Which light; narrower bands are of a clear sky by its transmittances, and infrared is beyond the data
+    #[arg(long, value_parser = band(), default_value = "broadband")]
+    pub band: Band,
+    /// Whose colours the picture of the sky has
+    #[arg(long, value_enum, default_value = "preetham", requires = "time")]
+    pub colours: PictureColours,
     /// Evaluate the sky's part in every texel, not to a tolerance of 0.1%
     #[arg(long)]
     pub full: bool,
@@ -53,6 +64,15 @@ pub struct SkyArgs {
     /// Folder for the files; made if it is not there
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
+}
+
+/// Whose colours the picture of the sky has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum PictureColours {
+    /// Preetham's: knows twilight.
+    Preetham,
+    /// Hosek's and Wilkie's: the better light, black at night.
+    Hosek,
 }
 
 /// Place and air; what is given goes before what the scene or the weather says.
@@ -134,4 +154,15 @@ fn size(text: &str) -> Result<[usize; 2], String> {
 fn model() -> impl TypedValueParser<Value = SkyModel> {
     PossibleValuesParser::new(SkyModel::ALL.map(SkyModel::name))
         .try_map(|name| SkyModel::from_name(&name).ok_or("not a model"))
+}
+
+/// A clear sky by its name.
+fn clear_sky() -> impl TypedValueParser<Value = ClearSky> {
+    PossibleValuesParser::new(ClearSky::ALL.map(ClearSky::name))
+        .try_map(|name| ClearSky::from_name(&name).ok_or("not a clear sky"))
+}
+
+/// A band by its name.
+fn band() -> impl TypedValueParser<Value = Band> {
+    PossibleValuesParser::new(Band::ALL.map(Band::name)).try_map(|name| Band::from_name(&name).ok_or("not a band"))
 }

@@ -68,7 +68,7 @@ pub fn keep(folder: &Path, steps: &Steps, settings: &MapSettings, map: &Exposure
 fn place(folder: &Path, steps: &Steps, settings: &MapSettings) -> PathBuf {
     let mut hasher = DefaultHasher::new();
     env!("CARGO_PKG_VERSION").hash(&mut hasher);
-    (settings.size, settings.model, settings.tolerance.map(f64::to_bits)).hash(&mut hasher);
+    (settings.size, settings.model, settings.haze.band, settings.tolerance.map(f64::to_bits)).hash(&mut hasher);
     let mut number = |value: f64| value.to_bits().hash(&mut hasher);
     number(settings.haze.turbidity);
     number(settings.haze.ground_albedo);

@@ -9,21 +9,29 @@ use super::stages::Stages;
 use super::tell;
 use super::write::Folder;
 use crate::export::exposure::{self, Part};
+use crate::export::sky_picture;
+use crate::export::sun_path::{self, SunPath};
 use crate::job::Cancel;
 use crate::scene::Site;
 use crate::sky::Sun;
+use crate::sky::dome::Haze;
 use crate::sky::events;
 use crate::sky::map::{ExposureMap, MapSettings};
+use crate::sky::picture::{Colours, Picture};
 use crate::sky::site::Outdoors;
+use crate::sky::spectrum::Atmosphere;
 use crate::sky::steps::Steps;
-use crate::sky::sun::{Air, position};
+use crate::sky::sun::{Air, eccentricity, position};
 use crate::sky::weather::{Weather, WeatherFormat};
 use anyhow::{Context, Result, bail};
-use args::SkyArgs;
+use args::{PictureColours, SkyArgs};
 use jiff::civil::Date;
 use report::{Found, Report};
 use std::io::IsTerminal;
 use std::time::Instant;
+
+/// Width and height of the picture of the sky, pixels.
+const PICTURE_PX: usize = 768;
 
 /// Runs the command.
 ///
@@ -55,7 +63,11 @@ pub fn run(args: &SkyArgs, cancel: &Cancel) -> Result<()> {
     let report = Report::new(args, found);
     let json = serde_json::to_string(&report)?;
     if let Some(folder) = &mut folder {
-        write(folder, &name, &map)?;
+        write_map(folder, &name, &map)?;
+        write_sun_path(folder, &name, &outdoors)?;
+        if let Some(sun) = sun {
+            write_picture(folder, args, &outdoors, sun)?;
+        }
         folder.file("sky.json", |out| writeln!(out, "{json}"))?;
         folder.list();
     }
@@ -86,7 +98,9 @@ fn open(args: &SkyArgs, stages: &Stages, cancel: &Cancel) -> Result<(String, Out
 
     let mut outdoors = Outdoors::of(&args.over(site), weather).with_context(|| name.clone())?;
     outdoors.model = args.model.unwrap_or(outdoors.model);
+    outdoors.clear_sky = args.clear_sky.unwrap_or(outdoors.clear_sky);
     outdoors.year = args.date.map_or(outdoors.year, |date| date.year());
+    let outdoors = outdoors.in_band(args.band).with_context(|| name.clone())?;
     Ok((name, outdoors, warnings))
 }
 
@@ -116,14 +130,39 @@ fn sun(args: &SkyArgs, outdoors: &Outdoors) -> Result<Option<Sun>> {
     Ok(Some(position(&outdoors.place, date.to_datetime(time), Some(Air::STANDARD))?))
 }
 
+/// Where the sun stands in every hour of the year, and its paths as a diagram.
+fn write_sun_path(folder: &mut Folder, name: &str, outdoors: &Outdoors) -> Result<()> {
+    let path = SunPath::of(&outdoors.place, outdoors.year)?;
+    folder.file("sun_path.csv", |out| sun_path::write_csv(out, &path))?;
+    folder.file("sun_path.svg", |out| sun_path::write_svg(out, &path, name))
+}
+
+/// The clear sky at the time that was asked for.
+fn write_picture(folder: &mut Folder, args: &SkyArgs, outdoors: &Outdoors, sun: Sun) -> Result<()> {
+    let Some(date) = args.date else { return Ok(()) };
+    if outdoors.weather.is_some() {
+        tell("note: the picture is of a clear sky; the weather is in the map alone");
+    }
+    let Haze { turbidity, ground_albedo, .. } = outdoors.haze;
+    let atmosphere = Atmosphere { ground_albedo, ..Atmosphere::new(turbidity) };
+    let colours = match args.colours {
+        PictureColours::Preetham => Colours::Preetham,
+        PictureColours::Hosek => Colours::Hosek,
+    };
+    let picture = Picture::paint(sun, eccentricity(date), &atmosphere, colours, PICTURE_PX);
+    folder.file("sky.hdr", |out| sky_picture::write_hdr(out, &picture))?;
+    folder.file("sky.exr", |out| sky_picture::write_exr(out, &picture))?;
+    folder.file("sky.png", |out| sky_picture::write_png(out, &picture, sky_picture::EXPOSURE))
+}
+
 /// The map's files.
-fn write(folder: &mut Folder, name: &str, map: &ExposureMap) -> Result<()> {
+fn write_map(folder: &mut Folder, name: &str, map: &ExposureMap) -> Result<()> {
     folder.file("exposure_diffuse.npy", |out| exposure::write_npy(out, map, Part::Diffuse))?;
     folder.file("exposure_direct.npy", |out| exposure::write_npy(out, map, Part::Direct))?;
     folder.file("exposure.exr", |out| exposure::write_exr(out, map))?;
     folder.file("exposure.hdr", |out| exposure::write_hdr(out, map))?;
     folder.file("suns.csv", |out| exposure::write_suns_csv(out, map))?;
-    let picture = exposure::picture::png(map, name)?;
+    let picture = exposure::picture::draw(map, name)?;
     if !picture.has_text {
         tell("warning: exposure.png has no text: the system has no font");
     }

@@ -20,6 +20,7 @@ pub struct Report {
     longitude_deg: f64,
     utc_offset_h: f64,
     model: &'static str,
+    band: &'static str,
     /// Time of steps and map, without files.
     pub seconds: f64,
     /// kWh/m2 over the period.
@@ -95,6 +96,7 @@ impl Report {
             longitude_deg: outdoors.place.longitude_rad.to_degrees(),
             utc_offset_h: outdoors.place.utc_offset_h,
             model: outdoors.model.name(),
+            band: outdoors.haze.band.name(),
             seconds: found.seconds,
             ghi: totals.ghi_kwh_m2,
             dni: totals.dni_kwh_m2,
@@ -160,10 +162,7 @@ impl Report {
         }
         let Check { evaluated, texels, rms, largest } = self.check;
         let [columns, rows] = self.map;
-        put(format!(
-            "map: {columns} x {rows}, sky {}, {} suns or none a day; {:.3} s",
-            self.model, self.steps, self.seconds
-        ));
+        put(format!("map: {columns} x {rows}, sky {}, {} steps; {:.3} s", self.model, self.steps, self.seconds));
         let directions = format!("{evaluated} directions evaluated for {} texels", columns * rows);
         put(if texels > 0 {
             format!("{directions}; off by {:.3}% rms, {:.3}% at most, at {texels} texels", 100.0 * rms, 100.0 * largest)

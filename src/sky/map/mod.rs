@@ -17,6 +17,7 @@ pub mod levels;
 mod tests;
 
 use super::dome::{Haze, SkyModel, skies};
+use super::spectrum::Band;
 use super::steps::{Steps, Totals};
 use super::term::{Skies, Term};
 use super::{Sun, towards};
@@ -56,7 +57,7 @@ pub struct MapSettings {
 impl Default for MapSettings {
     /// 512 x 512, Perez' sky, interpolated within 0.1% where it is tried.
     fn default() -> Self {
-        let haze = Haze { turbidity: 3.0, ground_albedo: 0.2 };
+        let haze = Haze { turbidity: 3.0, ground_albedo: 0.2, band: Band::Broadband };
         Self { size: [512, 512], model: SkyModel::Perez, haze, tolerance: Some(0.001) }
     }
 }
