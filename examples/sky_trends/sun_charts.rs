@@ -40,16 +40,24 @@ pub fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         let file = format!("sun_path_{}.svg", name.to_lowercase().replace(' ', "_"));
         whole_file(&folder.join(file), |out| sun_path::write_svg(out, &path, name))?;
     }
-    let pairs = |panels: &dyn Fn(&str, Place) -> Result<Vec<Panel>, SunError>| {
-        let panels = PLACES.iter().map(|(name, at)| panels(name, place(*at)));
-        Ok::<_, SunError>(panels.collect::<Result<Vec<_>, _>>()?.concat())
-    };
-    let [by_hour, by_day] = [pairs(&facade_by_hour)?, pairs(&facade_by_day)?];
+    let [by_hour, by_day] = [at_both_places(facade_by_hour)?, at_both_places(facade_by_day)?];
     whole_file(&folder.join("facade_by_hour.svg"), |out| curves::write(out, &by_hour, 2))?;
     whole_file(&folder.join("facade_by_day.svg"), |out| curves::write(out, &by_day, 2))?;
     let panels = sunrise_errors()?;
     whole_file(&folder.join("sunrise_error.svg"), |out| curves::write(out, &panels, 2))?;
     Ok(())
+}
+
+fn at_both_places(panels: fn(&str, Place) -> Result<Vec<Panel>, SunError>) -> Result<Vec<Panel>, SunError> {
+    let panels = PLACES.iter().map(|(name, at)| panels(name, place(*at)));
+    Ok(panels.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// Shadow angles along an axis.
+struct Shadows {
+    name: String,
+    /// A place along the axis, and HSA and VSA, degrees.
+    points: Vec<(f64, [f64; 2])>,
 }
 
 /// HSA and VSA, degrees; not numbers where the sun is down or behind.
@@ -61,15 +69,15 @@ fn angles_deg(place: &Place, time: DateTime) -> Result<[f64; 2], SunError> {
     })
 }
 
-/// Two panels, HSA and VSA, from curves whose points are (x, [HSA, VSA]).
-fn two_panels(name: &str, x: Axis, curves: Vec<(String, Vec<(f64, [f64; 2])>)>) -> Vec<Panel> {
+/// Two panels: HSA and VSA.
+fn two_panels(name: &str, x: Axis, curves: &[Shadows]) -> Vec<Panel> {
     let panel = |number: usize, title: &str, y: Axis| Panel {
         title: format!("{name}, south facade: {title}"),
         x: x.clone(),
         y,
         curves: curves
             .iter()
-            .map(|(name, points)| Curve {
+            .map(|Shadows { name, points }| Curve {
                 name: name.clone(),
                 points: points.iter().map(|(x, angles)| [*x, angles[number]]).collect(),
             })
@@ -88,20 +96,21 @@ fn facade_by_hour(name: &str, place: Place) -> Result<Vec<Panel>, SunError> {
             let time = midnight + SignedDuration::from_mins(5 * step);
             Ok((step as f64 / 12.0, angles_deg(&place, time)?))
         };
-        Ok((name.to_owned(), (4 * 12..=21 * 12).map(point).collect::<Result<_, SunError>>()?))
+        let points = (4 * 12..=21 * 12).map(point).collect::<Result<_, SunError>>()?;
+        Ok(Shadows { name: name.to_owned(), points })
     };
-    let curves = FACADE_DAYS.into_iter().map(curve).collect::<Result<_, SunError>>()?;
-    Ok(two_panels(name, Axis::every("hour of the day (local standard time)", [4.0, 21.0], 1.0), curves))
+    let curves = FACADE_DAYS.into_iter().map(curve).collect::<Result<Vec<_>, SunError>>()?;
+    Ok(two_panels(name, Axis::every("hour of the day (local standard time)", [4.0, 21.0], 1.0), &curves))
 }
 
 fn facade_by_day(name: &str, place: Place) -> Result<Vec<Panel>, SunError> {
     let curve = |hour: i8| {
         let point = |day: Date| Ok((f64::from(day.day_of_year()), angles_deg(&place, day.at(hour, 0, 0, 0))?));
         let points = days().step_by(2).map(point).collect::<Result<_, SunError>>()?;
-        Ok((format!("{hour} h"), points))
+        Ok(Shadows { name: format!("{hour} h"), points })
     };
-    let curves = FACADE_HOURS.into_iter().map(curve).collect::<Result<_, SunError>>()?;
-    Ok(two_panels(name, Axis::days_of_the_year(), curves))
+    let curves = FACADE_HOURS.into_iter().map(curve).collect::<Result<Vec<_>, SunError>>()?;
+    Ok(two_panels(name, Axis::days_of_the_year(), &curves))
 }
 
 /// All days of the year.

@@ -114,7 +114,7 @@ pub fn delta_t_s(date: Date) -> Result<f64, SunError> {
     Ok(delta_t::estimate(year.min(YEARS[1]))?)
 }
 
-/// Day of the year from 1 January = 1 on, and the angle of its beginning along the year, radians (Spencer 1971): 2 pi (J - 1)/365.
+/// The angle of a date along the year, radians (Spencer 1971): 2 pi (J - 1)/365, J the day of the year from 1 on.
 pub fn day_angle_rad(date: Date) -> f64 {
     2.0 * PI * (f64::from(date.day_of_year()) - 1.0) / 365.0
 }
