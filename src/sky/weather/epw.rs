@@ -249,7 +249,10 @@ impl Order<'_> {
             }
         };
         if !follows {
-            return Err(Kind::Syntax { expected: self.expected(period), found: shown_stamp(row, period.first.year.is_some()) });
+            return Err(Kind::Syntax {
+                expected: self.expected(period),
+                found: shown_stamp(row, period.first.year.is_some()),
+            });
         }
         if last_hour && period.last.is(row.date) {
             self.period += 1;
