@@ -6,8 +6,13 @@
 //!
 //! [`sun`] says where the sun stands, [`events`] when it rises and sets, [`facade`] how it meets a wall, [`clear`] how strong
 //! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
+//!
+//! [`hosek`] is the brightness of a clear sky by direction, in RGB and by band, [`spectrum`] what beam and sky bring by
+//! wavelength, [`disc`] how the beam is spread over the sun, [`colour`] the sky's colour, [`picture`] a fisheye of it all.
 
 pub mod clear;
+pub mod colour;
+pub mod disc;
 pub mod dome;
 pub mod events;
 pub mod facade;
@@ -15,8 +20,10 @@ pub mod hosek;
 pub mod lit;
 pub mod map;
 pub mod perez;
+pub mod picture;
 pub mod simple_sun;
 pub mod site;
+pub mod spectrum;
 pub mod steps;
 pub mod sun;
 pub mod term;
@@ -79,6 +86,11 @@ pub fn azimuth_elevation_rad(direction: DVec3) -> (f64, f64) {
     let flat = direction.x.hypot(direction.y);
     // A tiny negative angle becomes a whole turn in rounding.
     (if azimuth_rad < TAU { azimuth_rad } else { 0.0 }, direction.z.atan2(flat))
+}
+
+/// A number inside bounds; NaN becomes the lower one.
+fn within(value: f64, (low, high): (f64, f64)) -> f64 {
+    value.max(low).min(high)
 }
 
 #[cfg(test)]

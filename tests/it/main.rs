@@ -43,3 +43,6 @@ mod sun;
 
 /// Weather files, and the sky of a year against Radiance.
 mod weather;
+
+/// Sky models against an independent implementation.
+mod sky_colour;

@@ -6,7 +6,16 @@
 //!
 //! Limits: a clear sky without the sun's disc, for a sun at or above the horizon; values are not watts. Use the shape and
 //! scale it to the diffuse irradiance. The fit is weak with the sun within some degrees of the horizon.
+//!
+//! [`HosekSpectrum`] holds the same by wavelength, [`HosekBand`] within a band.
 
+mod band;
+mod spectral;
+
+pub use band::{BandNotReached, HosekBand};
+pub use spectral::{HosekSpectrum, WAVELENGTHS_NM};
+
+use super::within;
 use hw_skymodel::rgb::{SkyParams, SkyState};
 use std::f64::consts::FRAC_PI_2;
 
@@ -59,9 +68,9 @@ impl Hosek {
     /// `ground_albedo` to 0 to 1. NaN counts as the lower bound. About 0.3 us.
     pub fn new(sun_elevation_rad: f64, turbidity: f64, ground_albedo: f64) -> Self {
         let sky = SkyParams {
-            elevation: clamped(sun_elevation_rad, (0.0, FRAC_PI_2)) as f32,
-            turbidity: clamped(turbidity, TURBIDITY) as f32,
-            albedo: [clamped(ground_albedo, (0.0, 1.0)) as f32; 3],
+            elevation: within(sun_elevation_rad, (0.0, FRAC_PI_2)) as f32,
+            turbidity: within(turbidity, TURBIDITY) as f32,
+            albedo: [within(ground_albedo, (0.0, 1.0)) as f32; 3],
         };
         // The crate refuses only what is out of these bounds; a dark sky would be the answer.
         let (params, radiances) = SkyState::new(&sky).map(|state| state.raw()).unwrap_or(([0.0; 27], [0.0; 3]));
@@ -76,7 +85,7 @@ impl Hosek {
     /// Linear red, green and blue of Rec. 709 towards a direction, by its cosines to the zenith (0 used below the horizon)
     /// and to the sun. In the units of the data: only ratios mean something. Never negative, never NaN.
     pub fn radiance_rgb(&self, cos_zenith: f64, cos_gamma: f64) -> [f64; 3] {
-        let cos_gamma = clamped(cos_gamma, (-1.0, 1.0));
+        let cos_gamma = within(cos_gamma, (-1.0, 1.0));
         let gamma_rad = cos_gamma.acos();
         self.channels.map(|channel| channel.at(cos_zenith, gamma_rad, cos_gamma))
     }
@@ -86,11 +95,6 @@ impl Hosek {
         let rgb = self.radiance_rgb(cos_zenith, cos_gamma);
         rgb.iter().zip(LUMINANCE_REC709).map(|(value, share)| value * share).sum()
     }
-}
-
-/// A number inside bounds; NaN becomes the lower one.
-fn clamped(value: f64, (low, high): (f64, f64)) -> f64 {
-    value.max(low).min(high)
 }
 
 #[cfg(test)]
@@ -120,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_bounds_is_clamped() {
+    fn what_is_out_of_bounds_is_within() {
         assert_eq!(Hosek::new(-1.0, 0.0, -1.0), Hosek::new(0.0, 1.0, 0.0));
         assert_eq!(Hosek::new(2.0, 12.0, 3.0), Hosek::new(FRAC_PI_2, 10.0, 1.0));
         assert_eq!(Hosek::new(f64::NAN, f64::NAN, f64::NAN), Hosek::new(0.0, 1.0, 0.0));
