@@ -26,7 +26,8 @@ import numpy as np
 ELEVATIONS = (0.01, 1.0, 4.0, 12.0, 30.0, 48.0, 66.0, 82.0, 90.0)
 TURBIDITIES = (1.0, 1.5, 2.0, 3.3, 5.0, 6.75, 8.2, 10.0)
 ALBEDOS = (0.0, 0.2, 0.55, 1.0)
-WAVELENGTHS = (320.0, 333.0, 400.0, 437.0, 480.0, 555.0, 600.0, 690.0, 720.0)
+# Nanometres. At 720 itself Mitsuba reads beyond its data (times 0, so mostly right, but sometimes NaN): 719 stands for it.
+WAVELENGTHS = (320.0, 333.0, 400.0, 437.0, 480.0, 555.0, 600.0, 690.0, 719.0)
 
 
 def towards(azimuth_deg, elevation_deg):
