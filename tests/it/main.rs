@@ -46,3 +46,6 @@ mod weather;
 
 /// Sky models against an independent implementation.
 mod sky_colour;
+
+/// Steps of a period, the exposure map, and the command `sky`.
+mod exposure;

@@ -89,7 +89,7 @@ impl Report {
         let Found { outdoors, steps, map, day, .. } = found;
         let (totals, texels) = (map.totals, map.texel_totals());
         let off = |texels: f64, all: f64| if all > 0.0 { texels / all - 1.0 } else { 0.0 };
-        let clock = |time: DateTime| time.to_string();
+        let clock = |time: DateTime| time.strftime("%Y-%m-%dT%H:%M:%S").to_string();
         Self {
             scene: found.name.to_owned(),
             latitude_deg: outdoors.place.latitude_rad.to_degrees(),

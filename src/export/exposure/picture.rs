@@ -19,8 +19,11 @@ const SCALE: [[f64; 3]; 8] = [
     [252.0, 255.0, 164.0],
 ];
 
-/// Decades that the colours span, from the brightest texel down.
-const DECADES: f64 = 4.0;
+/// Decades that the colours span, at least and at most.
+const DECADES: [f64; 2] = [1.0, 7.0];
+
+/// Decades that the scale goes on under the dimmest texel.
+const BELOW: f64 = 0.3;
 
 /// Pixels of the map in the picture: wide, as the horizon is four times as long as the way up.
 const MAP: [f32; 2] = [960.0, 480.0];
@@ -34,8 +37,29 @@ const MARGINS: [f32; 4] = [64.0, 56.0, 120.0, 56.0];
 /// What the drawing says.
 pub fn draw(map: &ExposureMap, title: &str) -> io::Result<Picture> {
     let radiance = radiance(map);
-    let brightest = radiance.iter().copied().fold(0.0, f64::max);
-    png(&frame(map, title, brightest), 1.0, |sheet| paint(sheet, map, &radiance, brightest))
+    let range = Range::of(&radiance);
+    png(&frame(map, title, range), 1.0, |sheet| paint(sheet, map, &radiance, range))
+}
+
+/// What the colours span, kWh/m2/sr: from the brightest texel to just under the dimmest that has light.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    brightest: f64,
+    decades: f64,
+}
+
+impl Range {
+    fn of(radiance: &[f64]) -> Self {
+        let brightest = radiance.iter().copied().fold(0.0, f64::max);
+        let dimmest = radiance.iter().copied().filter(|&value| value > 0.0).fold(brightest, f64::min);
+        let decades = if brightest > 0.0 { (brightest / dimmest).log10() + BELOW } else { 0.0 };
+        Self { brightest, decades: decades.clamp(DECADES[0], DECADES[1]) }
+    }
+
+    /// From 0, at the dark end, to 1.
+    fn place(self, value: f64) -> f64 {
+        if value > 0.0 { (1.0 + (value / self.brightest).log10() / self.decades).clamp(0.0, 1.0) } else { 0.0 }
+    }
 }
 
 /// Sky and beams together in each texel, kWh/m2/sr.
@@ -46,7 +70,7 @@ fn radiance(map: &ExposureMap) -> Vec<f64> {
 }
 
 /// Each pixel of the map's place takes the brightest texel that it covers, so that single suns stay in sight.
-fn paint(sheet: &mut tiny_skia::Pixmap, map: &ExposureMap, radiance: &[f64], brightest: f64) {
+fn paint(sheet: &mut tiny_skia::Pixmap, map: &ExposureMap, radiance: &[f64], range: Range) {
     let [columns, rows] = map.size;
     let [wide, high] = MAP.map(|side| side as usize);
     let sheet_width = sheet.width() as usize;
@@ -60,7 +84,7 @@ fn paint(sheet: &mut tiny_skia::Pixmap, map: &ExposureMap, radiance: &[f64], bri
             let texels =
                 within.clone().flat_map(|row| covered(x, wide, columns).map(move |column| row * columns + column));
             let value = texels.map(|texel| radiance[texel]).fold(0.0, f64::max);
-            let [red, green, blue] = colour(value, brightest);
+            let [red, green, blue] = colour(range.place(value));
             let at = (y + MARGINS[1] as usize) * sheet_width + x + MARGINS[0] as usize;
             if let (Some(pixel), Some(colour)) =
                 (sheet.pixels_mut().get_mut(at), tiny_skia::PremultipliedColorU8::from_rgba(red, green, blue, 255))
@@ -71,16 +95,15 @@ fn paint(sheet: &mut tiny_skia::Pixmap, map: &ExposureMap, radiance: &[f64], bri
     }
 }
 
-fn colour(value: f64, brightest: f64) -> [u8; 3] {
-    let part = if value > 0.0 { 1.0 + (value / brightest).log10() / DECADES } else { 0.0 };
-    let place = part.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
+fn colour(part: f64) -> [u8; 3] {
+    let place = part * (SCALE.len() - 1) as f64;
     let first = (place as usize).min(SCALE.len() - 2);
     let along = place - first as f64;
     std::array::from_fn(|band| (SCALE[first][band] * (1.0 - along) + SCALE[first + 1][band] * along).round() as u8)
 }
 
 /// Title, axes and legend as SVG.
-fn frame(map: &ExposureMap, title: &str, brightest: f64) -> String {
+fn frame(map: &ExposureMap, title: &str, range: Range) -> String {
     let [left, top, right, bottom] = MARGINS;
     let [width, height] = [left + MAP[0] + right, top + MAP[1] + bottom];
     let mut svg = format!(
@@ -127,7 +150,7 @@ fn frame(map: &ExposureMap, title: &str, brightest: f64) -> String {
     let bar = left + MAP[0] + 22.0;
     for step in 0..STEPS {
         let part = (step as f64 + 0.5) / STEPS as f64;
-        let [red, green, blue] = colour(brightest * 10_f64.powf((part - 1.0) * DECADES), brightest);
+        let [red, green, blue] = colour(part);
         let high = MAP[1] / STEPS as f32;
         let y = top + MAP[1] - high * (step + 1) as f32;
         put(format_args!(
@@ -135,10 +158,11 @@ fn frame(map: &ExposureMap, title: &str, brightest: f64) -> String {
             high + 0.5
         ));
     }
-    let lowest = brightest.log10() - DECADES;
+    let Range { brightest, decades: span } = range;
+    let lowest = brightest.log10() - span;
     let decades = (lowest.ceil() as i32..=brightest.log10().floor() as i32).filter(|_| brightest > 0.0);
     for decade in decades {
-        let y = top + MAP[1] * (1.0 - ((f64::from(decade) - lowest) / DECADES) as f32);
+        let y = top + MAP[1] * (1.0 - ((f64::from(decade) - lowest) / span) as f32);
         put(format_args!(r##"<path d="M{} {y}h5" stroke="#444"/>"##, bar + 16.0));
         let value = 10_f64.powi(decade);
         put(format_args!(r#"<text x="{}" y="{}">{value}</text>"#, bar + 24.0, y + 5.0));
