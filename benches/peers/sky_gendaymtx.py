@@ -48,12 +48,12 @@ def read(path):
 
 
 def bins(head, rows):
-    """Row of Perez's table, 0 to 7, of each hour, as gendaymtx finds it."""
+    """Row of Perez's table, 0 to 7, of each hour, with gendaymtx's sun as its option -D tells it (Cooper's declination)."""
     latitude, longitude, meridian = (math.radians(float(line.split()[1])) for line in head[1:4])
     found = []
     for month, day, hour, direct, diffuse in ((int(r[0]), int(r[1]), *map(float, r[2:])) for r in rows):
         number = sum(MONTH_DAYS[: month - 1]) + day
-        declination = 0.4093 * math.sin(2 * math.pi * (number - 81) / 368)
+        declination = math.radians(23.45) * math.sin(2 * math.pi * (284 + number) / 365)
         shift = 0.170 * math.sin(4 * math.pi * (number - 80) / 373) - 0.129 * math.sin(2 * math.pi * (number - 8) / 355)
         solar = hour + shift + 12 * (meridian - longitude) / math.pi
         up = math.sin(latitude) * math.sin(declination)

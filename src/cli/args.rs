@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use super::sky::args::SkyArgs;
 use crate::scene::Method;
 use crate::study::stress::Failure;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -68,6 +69,8 @@ pub enum Command {
     },
     /// Stability where methods fail: scenes disturbed, and built-in scenes made for one failure each
     Stress(StressArgs),
+    /// The sun's path, a picture of the sky, and the exposure map of a period: what comes from each direction
+    Sky(SkyArgs),
 }
 
 /// What `stress` takes.

@@ -6,7 +6,8 @@ use super::run::{most_bytes, say, start_threads, warn};
 use super::stages::{Stages, processor_seconds};
 use super::tell;
 use super::write::Folder;
-use crate::export::chart::{png, write_csv, write_svg};
+use crate::export::chart::{write_csv, write_svg};
+use crate::export::png::png;
 use crate::job::{Cancel, Progress};
 use crate::light::Settings;
 use crate::model::choose::choose_voxel_m;
@@ -23,6 +24,9 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+/// Pixels of the PNG a unit of the SVG.
+const PIXELS_A_UNIT: f32 = 1.5;
 
 /// How runs are timed.
 pub struct Timing {
@@ -64,7 +68,7 @@ pub fn run(many: &Many, timing: &Timing, peers: &[PathBuf], cancel: &Cancel) -> 
 
     let mut svg = Vec::new();
     write_svg(&mut svg, &charts)?;
-    let picture = png(&String::from_utf8_lossy(&svg))?;
+    let picture = png(&String::from_utf8_lossy(&svg), PIXELS_A_UNIT, |_| ())?;
     if !picture.has_text {
         tell("warning: chart.png has no text: this system has no font; chart.svg has all of it");
     }

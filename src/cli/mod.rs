@@ -9,6 +9,7 @@ mod peer;
 mod plan;
 mod report;
 mod run;
+mod sky;
 mod stages;
 mod stress;
 mod table;

@@ -4,6 +4,7 @@ use super::args::{Args, Command, Common};
 use super::chart;
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
+use super::sky;
 use super::stages::{Stages, available_bytes};
 use super::stress;
 use super::write::{self, Analysed, Folder};
@@ -39,6 +40,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
         }
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
         Command::Stress(args) => stress::run(&args, cancel),
+        Command::Sky(args) => sky::run(&args, cancel),
     }
 }
 

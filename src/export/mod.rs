@@ -4,16 +4,20 @@
 //! target and renames, so that a failed or interrupted run leaves nothing half-written.
 
 pub mod chart;
+pub mod curves;
 pub mod exposure;
 pub mod field;
 pub mod graphml;
 pub mod plan;
 pub mod ply;
+#[cfg(feature = "cli")]
+pub mod png;
 pub mod reference;
 pub mod skeleton_json;
 pub mod sky_picture;
 pub mod stress;
 pub mod strips;
+pub mod sun_path;
 pub mod swc;
 pub mod voxels;
 

@@ -25,7 +25,7 @@ const MOST_FACTOR: f64 = 1000.0;
 const MOST_DOTS: usize = 40;
 
 /// Colours of methods in their order: told apart by those who see no red or green (Okabe & Ito 2008).
-const COLOURS: [&str; 6] = ["#d55e00", "#e69f00", "#0072b2", "#009e73", "#cc79a7", "#555555"];
+pub(super) const COLOURS: [&str; 6] = ["#d55e00", "#e69f00", "#0072b2", "#009e73", "#cc79a7", "#555555"];
 
 /// One strip: a case of a failure, by one method, over all its scenes.
 struct Strip<'a> {

@@ -35,7 +35,7 @@ pub struct ClearAir {
 /// Beam and diffuse irradiance of a clear sky.
 ///
 /// `elevation_rad` is the apparent elevation of the sun (with refraction), `extraterrestrial_w_m2` the beam outside the air
-/// ([`super::sun::extraterrestrial_w_m2`]). A sun at or below the horizon gives nothing. About 100 nanoseconds.
+/// ([`super::sun::extraterrestrial_w_m2`]). A sun at or below the horizon gives nothing. About 60 nanoseconds.
 pub fn irradiance(elevation_rad: f64, extraterrestrial_w_m2: f64, air: ClearAir) -> Irradiance {
     if elevation_rad.is_nan() || elevation_rad <= 0.0 {
         return Irradiance::default();

@@ -6,8 +6,10 @@
 //! Limits: Hosek's and Wilkie's sky is a clear one, whatever the weather; Perez's follows the weather's two figures and
 //! knows no single clouds. Light of the twilight, with the sun below the horizon, is spread as with the sun on it.
 
-use super::hosek::{Channel, Hosek, LUMINANCE_REC709};
+use super::hosek::Channel;
+use super::hosek::HosekBand;
 use super::perez::Perez;
+use super::spectrum::Band;
 use super::steps::Step;
 use super::term::{Skies, Term};
 use glam::DVec3;
@@ -50,6 +52,8 @@ pub struct Haze {
     pub turbidity: f64,
     /// Reflectance of the ground round about, 0 to 1.
     pub ground_albedo: f64,
+    /// Which light: Hosek's and Wilkie's sky has its own shape in each band, and none in infrared.
+    pub band: Band,
 }
 
 /// The skies of many steps, each scaled to its diffuse irradiance: the sum of a step's terms is its sky, W/m2/sr. Each term
@@ -92,17 +96,18 @@ fn shape(model: SkyModel, haze: Haze, step: &Step) -> Vec<Term> {
             vec![Term { towards_sun, weight: 1.0, a, b, c, d, e, k: 1.0, floor, ..Term::BLACK }]
         }
         SkyModel::Hosek => {
-            let sky = Hosek::new(step.sun.elevation_rad, haze.turbidity, haze.ground_albedo);
-            let channels = sky.channels.into_iter().zip(LUMINANCE_REC709);
-            channels.map(|(channel, share)| of_channel(towards_sun, channel, share)).collect()
+            let Haze { turbidity, ground_albedo, band } = haze;
+            // In a band that it does not reach the sky is black, and `skies` gives its light evenly.
+            let sky = HosekBand::new(step.sun.elevation_rad, turbidity, ground_albedo, band);
+            let channels = sky.map(|sky| sky.channels).unwrap_or_else(|_| vec![Channel::default()]);
+            channels.into_iter().map(|channel| of_channel(towards_sun, channel)).collect()
         }
     }
 }
 
-/// A channel of Hosek's sky, its brightness times a share.
-fn of_channel(towards_sun: DVec3, channel: Channel, share: f64) -> Term {
+fn of_channel(towards_sun: DVec3, channel: Channel) -> Term {
     let [a, b, k, c, d, e, f, i, h] = channel.params;
-    let weight = share * channel.radiance;
+    let weight = channel.radiance;
     Term { towards_sun, weight, a, b, least: f64::NEG_INFINITY, floor: 0.0, lift: 0.01, k, c, d, e, f, h, i }
 }
 

@@ -99,7 +99,7 @@ pub struct Crossings {
 /// day after it. Where the clock runs far from the sun, transit, sunrise and sunset may be on the dates before and after.
 ///
 /// Of two sunrises in that time (near a pole, about the equinox) it is the first, of sunsets after it the last. Height above the
-/// sea is not counted: it neither lowers the horizon nor thins the air. About half a millisecond.
+/// sea is not counted: it neither lowers the horizon nor thins the air. About 0.8 ms: 140 positions.
 ///
 /// # Errors
 /// A place or a year outside its bounds.
@@ -147,7 +147,7 @@ pub fn day(place: &Place, date: Date) -> Result<Day, SunError> {
     })
 }
 
-/// All sunrises and sunsets of a date of the calendar, from midnight of the clock up to the next. About half a millisecond.
+/// All sunrises and sunsets of a date of the calendar, from midnight of the clock up to the next. About 0.7 ms.
 ///
 /// # Errors
 /// A place or a year outside its bounds.

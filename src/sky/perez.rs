@@ -8,6 +8,9 @@
 //! The result is relative: whoever uses it scales it so that the sky gives the diffuse horizontal irradiance
 //! ([`Perez::horizontal`] is what to divide by). The sun's own disc is not in it.
 //!
+//! With Radiance's sun, and scaled by its sum over patches, the mean sky of a year is that of its `gendaymtx` within 0.002%
+//! (RMS over the patches, `tests/it/weather.rs`).
+//!
 //! Limits: the model was fitted to luminances of one site, Berkeley, with the sun up to 80 degrees high; it knows nothing
 //! of single clouds. Within a row brightness is kept to what skies are, as Radiance's `gendaymtx` does; between two rows
 //! the sky jumps.
@@ -140,15 +143,14 @@ impl Perez {
     /// All input is safe: a sun below the horizon is taken as on it, negative irradiance as none, and without any diffuse
     /// irradiance the sky is clear where there is sun and overcast where there is none.
     pub fn new(sun_zenith_rad: f64, dni_w_m2: f64, dhi_w_m2: f64, eccentricity: f64) -> Self {
-        let zenith = sun_zenith_rad.max(LEAST_ZENITH_RAD).min(FRAC_PI_2);
+        let zenith = kept(sun_zenith_rad, (LEAST_ZENITH_RAD, FRAC_PI_2));
         let (dni, dhi) = (dni_w_m2.max(0.0), dhi_w_m2.max(0.0));
 
-        // How clear and how bright. The order of max and min makes a number of what is none.
+        // How clear and how bright.
         let steep = 1.041 * zenith.powi(3);
         let ratio = if dni > 0.0 { dni / dhi } else { 0.0 };
-        let clearness = ((1.0 + ratio + steep) / (1.0 + steep)).max(CLEARNESS.0).min(CLEARNESS.1);
-        let brightness = dhi * air_mass(zenith) / (SOLAR_CONSTANT_W_M2 * eccentricity);
-        let brightness = brightness.max(BRIGHTNESS.0).min(BRIGHTNESS.1);
+        let clearness = kept((1.0 + ratio + steep) / (1.0 + steep), CLEARNESS);
+        let brightness = kept(dhi * air_mass(zenith) / (SOLAR_CONSTANT_W_M2 * eccentricity), BRIGHTNESS);
 
         // The five parameters.
         let dim = clearness > DIM.0 && clearness < DIM.1;
@@ -173,8 +175,8 @@ impl Perez {
     /// The radiance of a direction by the cosines of its angles to the zenith and to the sun, in a unit of this sky's own.
     /// Never negative, never NaN; below the horizon as on it.
     pub fn relative(&self, cos_zenith: f64, cos_gamma: f64) -> f64 {
-        let cos_zenith = cos_zenith.max(LEAST_COS_ZENITH).min(1.0);
-        let cos_gamma = cos_gamma.max(-1.0).min(1.0);
+        let cos_zenith = kept(cos_zenith, (LEAST_COS_ZENITH, 1.0));
+        let cos_gamma = kept(cos_gamma, (-1.0, 1.0));
         let gradation = 1.0 + self.a * (self.b / cos_zenith).exp();
         let indicatrix = 1.0 + self.c * (self.d * cos_gamma.acos()).exp() + self.e * cos_gamma * cos_gamma;
         // Each by itself: two that are negative must not make light.
@@ -184,18 +186,19 @@ impl Perez {
     /// The integral of the relative radiance times the cosine to the zenith over the upper hemisphere, with the sun at a
     /// direction (unit length): the horizontal irradiance in this sky's unit. 0 only for a sky that is black all over.
     ///
-    /// Midpoints of 128 x 256 cells of equal weight, within 1e-3 of the integral; a millisecond.
+    /// Midpoints of 128 x 128 cells of equal weight on one side of the sun's meridian, within 1e-3; half a millisecond.
     pub fn horizontal(&self, towards_sun: DVec3) -> f64 {
         const RINGS: usize = 128;
-        const SECTORS: usize = 256;
+        const SECTORS: usize = 128;
+        let flat = towards_sun.x.hypot(towards_sun.y);
         let mut sum = 0.0;
         for ring in 0..RINGS {
             // Equal steps of sin^2 are equal steps of the cosine-weighted solid angle.
             let sin2 = (ring as f64 + 0.5) / RINGS as f64;
             let (sin, cos) = (sin2.sqrt(), (1.0 - sin2).sqrt());
             for sector in 0..SECTORS {
-                let (y, x) = ((sector as f64 + 0.5) / SECTORS as f64 * 2.0 * PI).sin_cos();
-                sum += self.relative(cos, DVec3::new(x * sin, y * sin, cos).dot(towards_sun));
+                let from_sun = ((sector as f64 + 0.5) / SECTORS as f64 * PI).cos();
+                sum += self.relative(cos, cos * towards_sun.z + sin * flat * from_sun);
             }
         }
         PI * sum / (RINGS * SECTORS) as f64
@@ -207,6 +210,11 @@ fn bin(clearness: f64) -> (usize, &'static Bin) {
     let [first, others @ ..] = &BINS;
     let begun = others.iter().enumerate().rfind(|(_, bin)| clearness >= bin.clearness_from);
     begun.map_or((0, first), |(before, bin)| (before + 1, bin))
+}
+
+/// A value within bounds; the lower one for what is no number, which `clamp` would pass on.
+fn kept(value: f64, (low, high): (f64, f64)) -> f64 {
+    value.max(low).min(high)
 }
 
 /// The relative air mass (Kasten 1966), which the model was fitted with; 36.5 with the sun on the horizon.

@@ -5,8 +5,10 @@
 //! map, and whatever else adds up a period, are made of.
 
 use super::Place;
-use super::clear::{ClearAir, irradiance};
+use super::clear::{ClearAir, Irradiance, irradiance};
 use super::dome::{Haze, SkyModel};
+use super::hosek::BandNotReached;
+use super::spectrum::{Atmosphere, Band, Spectrum};
 use super::steps::{Period, Steps, of_clear_sky, of_weather};
 use super::sun::{SOLAR_CONSTANT_W_M2, SunError};
 use super::weather::Weather;
@@ -24,6 +26,33 @@ const TURBIDITY: f64 = 3.0;
 /// Reflectance of the ground where none is named: grass, and soil.
 const GROUND_ALBEDO: f64 = 0.2;
 
+/// What the sun and the sky bring when no cloud is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClearSky {
+    /// By Linke's turbidity (Ineichen and Perez 2002): broadband, fitted to measurements.
+    Ineichen,
+    /// By the published transmittances, wavelength by wavelength.
+    Spectral,
+}
+
+impl ClearSky {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Ineichen, Self::Spectral];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ineichen => "ineichen",
+            Self::Spectral => "spectral",
+        }
+    }
+
+    /// The clear sky of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|sky| sky.name() == name)
+    }
+}
+
 /// A site with what it left open decided.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outdoors {
@@ -39,18 +68,30 @@ pub struct Outdoors {
     pub year: i16,
     /// Air and ground.
     pub haze: Haze,
+    /// What sun and sky bring without weather.
+    pub clear_sky: ClearSky,
     /// How the sky's light is spread: Perez' with weather, Hosek's and Wilkie's without.
     pub model: SkyModel,
     /// What was decided, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// What a site does not say and nothing else does.
+/// What a site does not say and nothing else does, or asks and nothing answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SiteError {
     /// Neither site nor weather has it.
     #[error("{0} is missing: a site needs it, or weather that has it")]
     Missing(&'static str),
+    /// Weather is measured in all light together.
+    #[error("{0} light is known of a clear sky alone: weather files have all light together")]
+    BandOfWeather(Band),
+    /// Perez' sky follows irradiances of all light together.
+    #[error("{0} light has no sky by Perez, which is fitted to all light together; hosek and isotropic have")]
+    BandOfPerez(Band),
+    /// A band that no sky reaches.
+    #[error(transparent)]
+    BandNotReached(#[from] BandNotReached),
 }
 
 impl Outdoors {
@@ -90,6 +131,7 @@ impl Outdoors {
         let haze = Haze {
             turbidity: site.turbidity.unwrap_or(TURBIDITY),
             ground_albedo: site.ground_albedo.unwrap_or(GROUND_ALBEDO),
+            band: Band::Broadband,
         };
         Ok(Self {
             place: Place { latitude_rad, longitude_rad, utc_offset_h, altitude_m },
@@ -99,21 +141,43 @@ impl Outdoors {
             period,
             year,
             haze,
+            clear_sky: ClearSky::Ineichen,
             notes,
         })
     }
 
-    /// The steps of the period: the weather's, or a clear sky's (Ineichen and Perez, the turbidity taken as Linke's).
+    /// The same of one band of the spectrum; a narrower one than all is of a clear sky by its transmittances.
+    ///
+    /// # Errors
+    /// A band that the weather, the model or Hosek's and Wilkie's data do not have.
+    pub fn in_band(self, band: Band) -> Result<Self, SiteError> {
+        match (band, &self.weather, self.model) {
+            (Band::Broadband, ..) => return Ok(self),
+            (Band::Infrared, ..) => return Err(BandNotReached(band).into()),
+            (_, Some(_), _) => return Err(SiteError::BandOfWeather(band)),
+            (_, _, SkyModel::Perez) => return Err(SiteError::BandOfPerez(band)),
+            _ => {}
+        }
+        Ok(Self { haze: Haze { band, ..self.haze }, clear_sky: ClearSky::Spectral, ..self })
+    }
+
+    /// The steps of the period: the weather's, or a clear sky's.
     ///
     /// # Errors
     /// A place or a year beyond what the sun's position is known for.
     pub fn steps(&self) -> Result<Steps, SunError> {
-        let Some(weather) = &self.weather else {
-            let air = ClearAir { linke_turbidity: self.haze.turbidity, altitude_m: self.place.altitude_m };
-            return of_clear_sky(&self.place, self.year, &self.period, |sun, eccentricity| {
-                irradiance(sun.elevation_rad, SOLAR_CONSTANT_W_M2 * eccentricity, air)
-            });
-        };
-        of_weather(&self.place, weather, &self.period)
+        if let Some(weather) = &self.weather {
+            return of_weather(&self.place, weather, &self.period);
+        }
+        let Haze { turbidity, ground_albedo, band } = self.haze;
+        let air = ClearAir { linke_turbidity: turbidity, altitude_m: self.place.altitude_m };
+        let atmosphere = Atmosphere { ground_albedo, ..Atmosphere::new(turbidity) };
+        of_clear_sky(&self.place, self.year, &self.period, |sun, eccentricity| match self.clear_sky {
+            ClearSky::Ineichen => irradiance(sun.elevation_rad, SOLAR_CONSTANT_W_M2 * eccentricity, air),
+            ClearSky::Spectral => {
+                let spectrum = Spectrum::clear(sun.elevation_rad, eccentricity, &atmosphere);
+                Irradiance { dni_w_m2: spectrum.beam_w_m2(band), dhi_w_m2: spectrum.diffuse_w_m2(band) }
+            }
+        })
     }
 }

@@ -147,6 +147,7 @@ pub fn of_weather(place: &Place, weather: &Weather, period: &Period) -> Result<S
             pieces.push(Piece { date, hours: span, lit_h: hour.length_h, dni_wh_m2: 0.0, dhi_wh_m2 });
         }
     }
+    pieces.retain(|piece| piece.dni_wh_m2 > 0.0 || piece.dhi_wh_m2 > 0.0);
     found.steps = steps(place, &joined(pieces, period.step_min / 60.0))?;
     found.measured_ghi_kwh_m2 = hours.iter().map(|hour| hour.ghi_w_m2.map(|ghi| ghi * hour.length_h / 1000.0)).sum();
     if found.night_beam_kwh_m2 > 0.0 {
@@ -169,7 +170,7 @@ pub fn of_clear_sky(
     place: &Place,
     year: i16,
     period: &Period,
-    clear: impl Fn(Sun, f64) -> Irradiance,
+    clear: impl Fn(Sun, f64) -> Irradiance + Sync,
 ) -> Result<Steps, SunError> {
     let first = Date::new(year, 1, 1).map_err(|_| SunError::Calendar)?;
     let days = first.series(jiff::ToSpan::day(1)).take_while(|date| date.year() == year);
@@ -182,10 +183,10 @@ pub fn of_clear_sky(
         .collect();
 
     let mut found = steps(place, &joined(pieces, period.step_min / 60.0))?;
-    for step in &mut found {
+    found.par_iter_mut().for_each(|step| {
         let Irradiance { dni_w_m2, dhi_w_m2 } = clear(step.sun, step.eccentricity);
         (step.dni_w_m2, step.dhi_w_m2) = (dni_w_m2, dhi_w_m2);
-    }
+    });
     Ok(Steps { steps: found, ..Steps::default() })
 }
 

@@ -67,7 +67,7 @@ pub enum SunError {
 ///
 /// With `air` the elevation is the apparent one, raised by refraction down to where the upper limb sets (-0.833 degrees);
 /// without it, the geometric one. At the poles, where every direction is south or north, azimuths follow the longitude.
-/// About 10 microseconds a call, no allocation.
+/// About 6 microseconds a call, no allocation.
 ///
 /// # Errors
 /// A place, an air or a year outside its bounds.
@@ -114,7 +114,7 @@ pub fn delta_t_s(date: Date) -> Result<f64, SunError> {
     Ok(delta_t::estimate(year.min(YEARS[1]))?)
 }
 
-/// Day of the year from 1 January = 1 on, and the angle of its beginning along the year, radians (Spencer 1971): 2 pi (J - 1)/365.
+/// The angle of a date along the year, radians (Spencer 1971): 2 pi (J - 1)/365, J the day of the year from 1 on.
 pub fn day_angle_rad(date: Date) -> f64 {
     2.0 * PI * (f64::from(date.day_of_year()) - 1.0) / 365.0
 }

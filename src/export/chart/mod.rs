@@ -8,13 +8,9 @@ mod axes;
 mod csv;
 mod labels;
 mod panel;
-#[cfg(feature = "cli")]
-mod png;
 mod style;
 
 pub use csv::write_csv;
-#[cfg(feature = "cli")]
-pub use png::{Picture, png};
 
 use super::plan::escaped;
 use crate::study::chart::{SceneChart, verdict::grouped};

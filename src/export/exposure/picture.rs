@@ -1,7 +1,9 @@
 //! An exposure map as a picture with a legend: azimuth across, elevation up, energy by colour on a logarithmic scale.
 
+use crate::export::plan::escaped;
+use crate::export::png::{Picture, png};
 use crate::sky::map::ExposureMap;
-use resvg::{tiny_skia, usvg};
+use resvg::tiny_skia;
 use std::fmt::Write;
 use std::io;
 
@@ -26,34 +28,14 @@ const MAP: [f32; 2] = [960.0, 480.0];
 /// Room left, above, right and below it.
 const MARGINS: [f32; 4] = [64.0, 56.0, 120.0, 56.0];
 
-/// A picture as it is written to a file.
-pub struct Picture {
-    /// The PNG.
-    pub bytes: Vec<u8>,
-    /// Whether the system had a font to write with; without one the picture has no text.
-    pub has_text: bool,
-}
-
 /// Draws the map under a title.
 ///
 /// # Errors
 /// What the drawing says.
-pub fn png(map: &ExposureMap, title: &str) -> io::Result<Picture> {
-    let [left, top, right, bottom] = MARGINS;
-    let [width, height] = [left + MAP[0] + right, top + MAP[1] + bottom].map(|side| side as u32);
-    let mut options = usvg::Options::default();
-    options.fontdb_mut().load_system_fonts();
-    let has_text = !options.fontdb.is_empty();
-
+pub fn draw(map: &ExposureMap, title: &str) -> io::Result<Picture> {
     let radiance = radiance(map);
     let brightest = radiance.iter().copied().fold(0.0, f64::max);
-    let frame = usvg::Tree::from_str(&frame(map, title, brightest), &options).map_err(io::Error::other)?;
-    let failed = || io::Error::other("the picture cannot be drawn");
-    let mut sheet = tiny_skia::Pixmap::new(width, height).ok_or_else(failed)?;
-    sheet.fill(tiny_skia::Color::WHITE);
-    paint(&mut sheet, map, &radiance, brightest);
-    resvg::render(&frame, tiny_skia::Transform::identity(), &mut sheet.as_mut());
-    Ok(Picture { bytes: sheet.encode_png().map_err(io::Error::other)?, has_text })
+    png(&frame(map, title, brightest), 1.0, |sheet| paint(sheet, map, &radiance, brightest))
 }
 
 /// Sky and beams together in each texel, kWh/m2/sr.
@@ -107,7 +89,7 @@ fn frame(map: &ExposureMap, title: &str, brightest: f64) -> String {
     // Writing to a string cannot fail.
     let mut put = |line: std::fmt::Arguments| _ = svg.write_fmt(line);
     let totals = map.totals;
-    let title = title.replace('&', "&amp;").replace('<', "&lt;");
+    let title = escaped(title);
     put(format_args!(r#"<text x="{left}" y="22" font-size="17">{title}</text>"#));
     put(format_args!(
         r##"<text x="{left}" y="43" fill="#555">kWh/m²: global horizontal {:.0}, direct normal {:.0}, diffuse horizontal {:.0}</text>"##,

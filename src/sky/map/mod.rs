@@ -17,6 +17,7 @@ pub mod levels;
 mod tests;
 
 use super::dome::{Haze, SkyModel, skies};
+use super::spectrum::Band;
 use super::steps::{Steps, Totals};
 use super::term::{Skies, Term};
 use super::{Sun, towards};
@@ -25,6 +26,7 @@ use diffuse::{Samples, sample};
 use glam::DVec3;
 use jiff::civil::DateTime;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Radius of the sun's disc, radians; the beam of a step is spread over it.
@@ -55,7 +57,7 @@ pub struct MapSettings {
 impl Default for MapSettings {
     /// 512 x 512, Perez' sky, interpolated within 0.1% where it is tried.
     fn default() -> Self {
-        let haze = Haze { turbidity: 3.0, ground_albedo: 0.2 };
+        let haze = Haze { turbidity: 3.0, ground_albedo: 0.2, band: Band::Broadband };
         Self { size: [512, 512], model: SkyModel::Perez, haze, tolerance: Some(0.001) }
     }
 }
@@ -91,7 +93,7 @@ pub struct ExposureMap {
 }
 
 /// The smooth part against the full sum.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Check {
     /// Directions in which the full sum was evaluated to make the map.
     pub evaluated: usize,
@@ -127,19 +129,23 @@ impl ExposureMap {
             .collect();
         let sum = Skies::new(&terms);
         let size = settings.size.map(|texels| texels.clamp(1, 8192));
-        let mut map = Self {
-            size,
-            diffuse_kwh_m2: Vec::new(),
-            direct_kwh_m2: vec![0.0; size[0] * size[1]],
-            suns: suns(steps),
-            totals: steps.totals(),
-            check: Check::default(),
-        };
+        let mut map = Self::of_parts(steps, size, Vec::new(), vec![0.0; size[0] * size[1]], Check::default());
         cancel.check()?;
         map.fill_diffuse(&sum, settings.tolerance, cancel)?;
         map.splat_suns();
         progress.end();
         Ok(map)
+    }
+
+    /// The map of a period whose texels are known already: those of an earlier map of the same period and settings.
+    pub fn of_parts(
+        steps: &Steps,
+        size: [usize; 2],
+        diffuse_kwh_m2: Vec<f32>,
+        direct_kwh_m2: Vec<f32>,
+        check: Check,
+    ) -> Self {
+        Self { size, diffuse_kwh_m2, direct_kwh_m2, suns: suns(steps), totals: steps.totals(), check }
     }
 
     /// Azimuth and elevation of the middle of a texel, radians.

@@ -31,6 +31,24 @@ pub enum Band {
 }
 
 impl Band {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Broadband, Self::Visible, Self::Ultraviolet, Self::Infrared];
+
+    /// Its name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Broadband => "broadband",
+            Self::Visible => "visible",
+            Self::Ultraviolet => "ultraviolet",
+            Self::Infrared => "infrared",
+        }
+    }
+
+    /// The band of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|band| band.name() == name)
+    }
+
     /// From and to, um.
     pub fn limits_um(self) -> (f64, f64) {
         match self {
@@ -44,12 +62,7 @@ impl Band {
 
 impl fmt::Display for Band {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Broadband => "broadband",
-            Self::Visible => "visible",
-            Self::Ultraviolet => "ultraviolet",
-            Self::Infrared => "infrared",
-        })
+        out.write_str(self.name())
     }
 }
 

@@ -233,7 +233,7 @@ impl Order<'_> {
     /// Takes the next row.
     fn next(&mut self, row: Stamp) -> Result<(), Kind> {
         let Some(period) = self.header.periods.get(self.period) else {
-            let found = shown_stamp(row);
+            let found = shown_stamp(row, false);
             return Err(Kind::Syntax { expected: "no row after the last day of DATA PERIODS".into(), found });
         };
         let last_hour = row.hour == 23 && row.part + 1 == self.header.records_per_hour;
@@ -249,7 +249,10 @@ impl Order<'_> {
             }
         };
         if !follows {
-            return Err(Kind::Syntax { expected: self.expected(period), found: shown_stamp(row) });
+            return Err(Kind::Syntax {
+                expected: self.expected(period),
+                found: shown_stamp(row, period.first.year.is_some()),
+            });
         }
         if last_hour && period.last.is(row.date) {
             self.period += 1;
@@ -265,8 +268,7 @@ impl Order<'_> {
         match self.header.periods.get(self.period) {
             None => Ok(()),
             Some(period) => {
-                let Day { month, day, .. } = period.last;
-                Err(Kind::Missing(format!("{} of the data up to {month}/{day}", self.expected(period))))
+                Err(Kind::Missing(format!("{} of the data up to {}", self.expected(period), period.last.shown())))
             }
         }
     }
@@ -274,7 +276,7 @@ impl Order<'_> {
     /// The row that must come next.
     fn expected(&self, period: &Period) -> String {
         match self.before {
-            None => format!("the row of {}/{} hour 1", period.first.month, period.first.day),
+            None => format!("the row of {} hour 1", period.first.shown()),
             Some(before) if before.part + 1 < self.header.records_per_hour => format!(
                 "part {} of {}/{} hour {}",
                 before.part + 2,
@@ -299,6 +301,12 @@ impl Day {
         let year = self.year.is_none_or(|year| year == date.year());
         year && self.month == i16::from(date.month()) && self.day == i16::from(date.day())
     }
+
+    /// As the file writes it.
+    fn shown(&self) -> String {
+        let year = self.year.map_or(String::new(), |year| format!("/{year}"));
+        format!("{}/{}{year}", self.month, self.day)
+    }
 }
 
 /// Whether a day of the calendar follows another, whatever their years; 29 February may be left out, in a leap year too.
@@ -310,8 +318,11 @@ fn is_next_day(before: Date, next: Date) -> bool {
 }
 
 /// A row's time as the file writes it.
-fn shown_stamp(stamp: Stamp) -> String {
-    format!("{}/{} hour {}", stamp.date.month(), stamp.date.day(), stamp.hour + 1)
+fn shown_stamp(stamp: Stamp, with_year: bool) -> String {
+    let Stamp { date, hour, .. } = stamp;
+    let year = with_year.then(|| date.year());
+    let day = Day { month: date.month().into(), day: date.day().into(), year };
+    format!("{} hour {}", day.shown(), hour + 1)
 }
 
 /// The fields of a line, between commas that are not in quotes; without the blanks around them and without their quotes.

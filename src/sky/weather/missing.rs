@@ -5,7 +5,7 @@
 //! has above the horizon. With the sun too low the division is worth nothing: then, and where two are missing, a number is
 //! taken as 0 and told.
 
-use super::{Hour, Row};
+use super::{Hour, MOST_W_M2, Row};
 use crate::sky::{Place, sun};
 
 /// Least mean sine of the sun's elevation by which direct light is divided out, 3 degrees: below, an error of 5 W/m2 in the
@@ -14,9 +14,6 @@ const LEAST_UP: f64 = 0.05;
 
 /// Moments of an interval at which the sun is looked up: in an hour five minutes apart.
 const MOMENTS: u32 = 12;
-
-/// Most direct irradiance that is accepted, W/m2.
-const MOST_DNI_W_M2: f64 = 1500.0;
 
 /// Lines named in a warning before the rest is only counted.
 const LINES_NAMED: usize = 5;
@@ -55,7 +52,7 @@ fn answers(place: &Place, row: &Row) -> [Option<f64>; 2] {
             let dni = mean_up(place, row).and_then(|up| match (row.ghi, dhi) {
                 // No sun, no direct light, whatever else is known.
                 _ if up == 0.0 => Some(0.0),
-                (Some(ghi), Some(dhi)) if up >= LEAST_UP => Some(((ghi - dhi) / up).clamp(0.0, MOST_DNI_W_M2)),
+                (Some(ghi), Some(dhi)) if up >= LEAST_UP => Some(((ghi - dhi) / up).clamp(0.0, MOST_W_M2)),
                 _ => None,
             });
             // Without the sun, all light is diffuse.

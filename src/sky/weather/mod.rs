@@ -27,6 +27,9 @@ use std::path::Path;
 /// Endings of the weather formats that can be read.
 pub const FORMATS: &str = "epw, wea";
 
+/// Most irradiance that is accepted, W/m2.
+const MOST_W_M2: f64 = 1500.0;
+
 /// Hours between a place's zone and the one its longitude asks for beyond which a sign is likely to be wrong: no country
 /// keeps a zone further off.
 const FARTHEST_ZONE_H: f64 = 3.5;
@@ -66,8 +69,8 @@ pub struct Hour {
 /// What a period brings on a square metre, kWh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sums {
-    /// All light on the horizontal, by the file's own numbers; where they are missing it counts as 0.
-    pub ghi_kwh_m2: f64,
+    /// All light on the horizontal, by the file's own numbers; intervals without one count as 0, a file without any has none.
+    pub ghi_kwh_m2: Option<f64>,
     /// Direct light on a plane that faces the sun.
     pub dni_kwh_m2: f64,
     /// Diffuse light on the horizontal.
@@ -122,8 +125,9 @@ impl Weather {
     /// What all intervals together bring.
     pub fn sums(&self) -> Sums {
         let sum = |of: fn(&Hour) -> f64| self.hours.iter().map(|hour| of(hour) * hour.length_h).sum::<f64>() / 1000.0;
+        let any_ghi = self.hours.iter().any(|hour| hour.ghi_w_m2.is_some());
         Sums {
-            ghi_kwh_m2: sum(|hour| hour.ghi_w_m2.unwrap_or(0.0)),
+            ghi_kwh_m2: any_ghi.then(|| sum(|hour| hour.ghi_w_m2.unwrap_or(0.0))),
             dni_kwh_m2: sum(|hour| hour.dni_w_m2),
             dhi_kwh_m2: sum(|hour| hour.dhi_w_m2),
         }
@@ -192,7 +196,7 @@ fn zone_warning(place: &Place) -> Option<String> {
 
 /// The mean irradiance over a row, W/m2.
 fn irradiance(field: &[u8], what: &str) -> Result<f64, Kind> {
-    bounded(field, what, [0.0, 1500.0], "0 to 1500 W/m2")
+    bounded(field, what, [0.0, MOST_W_M2], "0 to 1500 W/m2")
 }
 
 /// A number within bounds.

@@ -46,6 +46,7 @@ fn an_epw_row_is_the_hour_that_ends_with_its_stamp() {
     assert!(weather.warnings.is_empty(), "{:?}", weather.warnings);
     let sums = weather.sums();
     assert!((sums.dni_kwh_m2 - 2.76).abs() < 1e-12 && (sums.dhi_kwh_m2 - 0.276).abs() < 1e-12);
+    assert_eq!(sums.ghi_kwh_m2, Some(sums.dhi_kwh_m2));
 }
 
 #[test]
@@ -95,6 +96,22 @@ fn parts_of_hours_come_one_after_the_other() {
         .replace(",45,x", ",30,x")
         .replace(",60,x", ",45,x");
     assert_eq!(epw(&begins).hours, weather.hours);
+}
+
+#[test]
+fn periods_may_be_several_and_go_over_the_turn_of_the_year() {
+    let two_days = epw_text(1, 2, plain);
+    let both = "1,1,D,Monday,6/1, 6/2";
+    let apart = two_days.replace(both, "2,1,D,Monday,6/1,6/1,E,Monday, 6/9, 6/9").replace("2003,6,2,", "2003,6,9,");
+    assert_eq!(epw(&apart).hours[24].start, date(2003, 6, 9).at(0, 0, 0, 0));
+    let over = two_days.replace(both, "1,1,D,Monday,12/31,1/1");
+    let over = over.replace("2003,6,1,", "2003,12,31,").replace("2003,6,2,", "2004,1,1,");
+    assert_eq!(epw(&over).hours[24].start, date(2004, 1, 1).at(0, 0, 0, 0));
+    // Days with a year are those of that year.
+    assert_eq!(epw(&two_days.replace(both, "1,1,D,Monday,6/1/2003,6/2/2003")), epw(&two_days));
+    let other = two_days.replace(both, "1,1,D,Monday,6/1/2004,6/2/2004");
+    let error = read(other.as_bytes(), "a.epw").unwrap_err().to_string();
+    assert_eq!(error, "a.epw:4: expected the row of 6/1/2004 hour 1, found 6/1/2003 hour 1");
 }
 
 #[test]
