@@ -66,7 +66,7 @@ impl Preetham {
     }
 
     /// Linear sRGB towards a direction, its luminance in kcd/m2. Negative channels, colours outside sRGB, are cut to 0.
-    /// Never NaN. About 60 ns.
+    /// Never NaN. About 0.1 us.
     pub fn rgb(&self, cos_zenith: f64, cos_gamma: f64) -> [f64; 3] {
         linear_srgb(xyz(self.luminance_xy(cos_zenith, cos_gamma))).map(|value| value.max(0.0))
     }

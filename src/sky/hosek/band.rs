@@ -36,7 +36,7 @@ pub struct HosekBand {
 }
 
 impl HosekBand {
-    /// The sky with the sun at `sun_elevation_rad`, clamped as by [`Hosek::new`]. About 1 us.
+    /// The sky with the sun at `sun_elevation_rad`, clamped as by [`Hosek::new`]. About 4 us.
     ///
     /// # Errors
     /// Infrared: the data end at 720 nm.

@@ -37,7 +37,7 @@ pub struct HosekSpectrum {
 
 impl HosekSpectrum {
     /// The sky with the sun at `sun_elevation_rad`, clamped to 0 to a quarter turn; `turbidity` clamped to 1 to 10 and
-    /// `ground_albedo` to 0 to 1. NaN counts as the lower bound. About 2 us.
+    /// `ground_albedo` to 0 to 1. NaN counts as the lower bound. About 10 us.
     pub fn new(sun_elevation_rad: f64, turbidity: f64, ground_albedo: f64) -> Self {
         Self { channels: channels(sun_elevation_rad, turbidity, ground_albedo, std::array::from_fn(|at| at)) }
     }

@@ -99,7 +99,7 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// Under a clear sky with the sun's centre at `sun_elevation_rad`; zero below the horizon. `eccentricity` is E0, the
-    /// square of the mean distance of the sun over today's. About 20 us.
+    /// square of the mean distance of the sun over today's. About 30 us.
     pub fn clear(sun_elevation_rad: f64, eccentricity: f64, atmosphere: &Atmosphere) -> Self {
         let mut spectrum = Self { beam_w_m2_um: [0.0; ROWS], diffuse_w_m2_um: [0.0; ROWS] };
         if sun_elevation_rad < 0.0 || sun_elevation_rad.is_nan() {
