@@ -4,8 +4,8 @@
 //! appendix 1) take from Leckner and Iqbal: air, aerosol by turbidity, ozone, water vapour, mixed gases. The scattered light
 //! on the horizontal by Bird and Riordan (SPCTRAL2, their equations 3-1 to 3-17), their rural aerosol. Table 0.3 to 4 um.
 //!
-//! Against SPCTRAL2's own beam with the same aerosol: 0.2% from 30 degrees of elevation up, 0.6% at 10, 1.8% at 3, for
-//! SPCTRAL2 gives ozone a path of its own and another fit of the air. Turbidity is the ratio of the whole atmosphere's
+//! Against SPCTRAL2 with the same aerosol: the beam within 0.2% from 30 degrees of elevation up, 0.6% at 10, 1.8% at 3, the
+//! diffuse within 0.4%, 0.5% and 4.6%, for SPCTRAL2 gives ozone a path of its own and another fit of the air. Turbidity is the ratio of the whole atmosphere's
 //! optical depth to that of clean air, in visible light (1.9 very clear, 10 haze), as in the sky models; it is not Linke's.
 //! Water, ozone and pressure are inputs; the altitude's effect on aerosol is not known here.
 
