@@ -9,7 +9,7 @@
 //! Papers: Perez, Seals, Michalsky 1993; Hosek, Wilkie 2012; polynomial of the arc cosine: Abramowitz & Stegun 4.4.46.
 
 use glam::DVec3;
-use std::f32::consts::{LOG2_E, PI};
+use std::f32::consts::{FRAC_PI_2, LN_2, LOG2_E, PI};
 
 /// Least denominator of the glow: a published `h` of 1 would make it infinite in the sun's very middle.
 const LEAST_SPREAD: f64 = 1e-4;
@@ -274,7 +274,7 @@ fn exp(x: f32) -> f32 {
     let part = x - (shifted - TO_INTEGER);
 
     // 2^part from -1/2 to 1/2: the Taylor polynomial of degree 6 is within 2e-7 there.
-    let powers = [0.000_154_035_3, 0.001_333_355_8, 0.009_618_129, 0.055_504_11, 0.240_226_5, 0.693_147_2, 1.0];
+    let powers = [0.000_154_035_3, 0.001_333_355_8, 0.009_618_129, 0.055_504_11, 0.240_226_5, LN_2, 1.0];
     let power = powers.into_iter().fold(0.0, |sum: f32, power: f32| sum * part + power);
     f32::from_bits(power.to_bits().wrapping_add(shifted.to_bits() << 23))
 }
@@ -284,13 +284,13 @@ fn exp(x: f32) -> f32 {
 fn acos(x: f32) -> f32 {
     let powers = [
         -0.001_262_491_1,
-        0.006_670_090_1,
-        -0.017_088_125_6,
-        0.030_891_881,
-        -0.050_174_304_6,
-        0.088_978_987_4,
-        -0.214_598_801_6,
-        1.570_796_305,
+        0.006_670_09,
+        -0.017_088_126,
+        0.030_891_88,
+        -0.050_174_303,
+        0.088_978_99,
+        -0.214_598_8,
+        FRAC_PI_2,
     ];
     let size = x.abs();
     let series = powers.into_iter().fold(0.0, |sum: f32, power: f32| sum * size + power);

@@ -144,7 +144,7 @@ impl Samples {
         };
 
         for column in 0..self.columns {
-            if row % 2 == 0 {
+            if row.is_multiple_of(2) {
                 fine.values[2 * column] = self.value(row / 2, column);
                 continue;
             }
