@@ -69,6 +69,8 @@ pub mod flow;
 
 pub mod trace;
 
+pub mod daylight;
+
 pub mod study;
 
 pub mod export;

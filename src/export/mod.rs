@@ -6,6 +6,7 @@
 pub mod chart;
 pub mod curves;
 pub mod exposure;
+pub mod exposures;
 pub mod field;
 pub mod graphml;
 pub mod plan;

@@ -163,7 +163,18 @@ impl Rays {
         if length_m <= 0.0 {
             return 1.0;
         }
-        let ray = Shear::new(from_m, (to_m - from_m) / length_m);
+        self.passing(from_m, (to_m - from_m) / length_m, length_m, ignore)
+    }
+
+    /// The share of light from outside the scene, along the unit vector `direction` that points to where it comes from, that
+    /// reaches a point which stands clear of its surface: 0 where something opaque is in the way, else the product of the
+    /// transmittances of the glazing.
+    pub fn from_afar(&self, at_m: Vec3, direction: Vec3) -> f32 {
+        self.passing(at_m, direction, f32::MAX / UNITS_PER_M, |_| false)
+    }
+
+    fn passing(&self, from_m: Vec3, direction: Vec3, length_m: f32, ignore: impl Fn(Surface) -> bool) -> f32 {
+        let ray = Shear::new(from_m, direction);
         let mut panes: Vec<(f32, f32)> = Vec::new();
         let misses = self.tree.ray_traverse_miss(ray.in_tree(length_m), |_, leaf| {
             let distance_m = self.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray));

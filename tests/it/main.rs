@@ -49,3 +49,6 @@ mod sky_colour;
 
 /// Steps of a period, the exposure map, and the command `sky`.
 mod exposure;
+
+/// What surfaces receive of sun and sky.
+mod daylight;

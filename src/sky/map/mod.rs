@@ -71,6 +71,8 @@ pub struct SunEnergy {
     pub sun: Sun,
     /// Energy of the beam on a plane that faces it, kWh/m2.
     pub energy_kwh_m2: f64,
+    /// How long it shines, hours.
+    pub hours: f64,
 }
 
 /// What comes from each direction over a period.
@@ -268,9 +270,13 @@ impl ExposureMap {
 /// The suns of the steps that have a beam.
 fn suns(steps: &Steps) -> Vec<SunEnergy> {
     let beams = steps.steps.iter().filter(|step| step.dni_w_m2 > 0.0);
-    let energy = |dni_w_m2: f64, hours: f64| dni_w_m2 * hours / 1000.0;
     beams
-        .map(|step| SunEnergy { time: step.time, sun: step.sun, energy_kwh_m2: energy(step.dni_w_m2, step.hours) })
+        .map(|step| SunEnergy {
+            time: step.time,
+            sun: step.sun,
+            energy_kwh_m2: step.dni_w_m2 * step.hours / 1000.0,
+            hours: step.hours,
+        })
         .collect()
 }
 

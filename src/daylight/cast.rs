@@ -1,0 +1,169 @@
+//! How much do sun and sky bring to a sensor, by casting rays at every sun of the period and over the sky?
+//!
+//! The beam: a shadow ray to each sun, which stands where it is and not where a texel of the map has it. The sky: directions
+//! by the cosine to the normal, evenly spread (R2 sequence), each bringing the map's radiance where nothing is in its way;
+//! glazing weakens both. The directions fall into blocks that are turned against each other at random; how far the blocks
+//! differ is the standard error.
+//!
+//! Cost: a ray a sun and a ray a direction, so some 5 ms a sensor for a year of hours; sensors share nothing. Limits: a
+//! sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed or face
+//! outwards.
+
+use super::Exposure;
+use crate::flow::sequence;
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::Status;
+use crate::rays::Rays;
+use crate::scene::Sensor;
+use crate::sky::map::ExposureMap;
+use crate::sky::{azimuth_elevation_rad, towards};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Blocks of directions that are turned against each other.
+const BLOCKS: u32 = 8;
+
+/// Directions in which a sensor looks for the backs of surfaces.
+const LOOKS: u32 = 32;
+
+/// Offsets of the sensors' sequences start here, apart from those of the estimators.
+const OFFSETS: u64 = 1 << 46;
+
+/// How a sensor is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Casting {
+    /// Directions of the sky; rounded up to whole blocks.
+    pub sky_rays: u32,
+    /// Seed of the turns.
+    pub seed: u64,
+}
+
+impl Default for Casting {
+    /// 4096 directions: the sky's part within some 0.3%.
+    fn default() -> Self {
+        Self { sky_rays: 4096, seed: 0 }
+    }
+}
+
+/// What each sensor receives of a map's sun and sky, in their order. `north_rad` is the direction of true north, clockwise
+/// from the scene's +Y.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn cast(
+    rays: &Rays,
+    sensors: &[Sensor],
+    map: &ExposureMap,
+    north_rad: f64,
+    casting: Casting,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<Exposure>, Cancelled> {
+    progress.begin("rays", sensors.len() as u64);
+    let suns: Vec<(Vec3, f64, f64)> = map
+        .suns
+        .iter()
+        .map(|sun| {
+            let direction = towards(sun.sun.azimuth_rad + north_rad, sun.sun.elevation_rad).as_vec3();
+            (direction, sun.energy_kwh_m2, sun.hours)
+        })
+        .collect();
+    let sky = Sky { map, north_rad };
+    let exposures: Result<Vec<Exposure>, Cancelled> = sensors
+        .par_iter()
+        .enumerate()
+        .map(|(number, sensor)| {
+            cancel.check()?;
+            let exposure = at_sensor(rays, sensor, &suns, &sky, casting, number as u64);
+            progress.advance(1);
+            Ok(exposure)
+        })
+        .collect();
+    progress.end();
+    exposures
+}
+
+/// The sky of a map, by directions of the scene.
+struct Sky<'a> {
+    map: &'a ExposureMap,
+    north_rad: f64,
+}
+
+impl Sky<'_> {
+    /// The period's energy from a direction, kWh/m2/sr; 0 from below the horizon.
+    fn radiance_kwh_m2_sr(&self, direction: DVec3) -> f64 {
+        if direction.z <= 0.0 {
+            return 0.0;
+        }
+        let (azimuth_rad, elevation_rad) = azimuth_elevation_rad(direction);
+        let [column, row] = self.map.texel(azimuth_rad - self.north_rad, elevation_rad);
+        let energy = self.map.diffuse_kwh_m2.get(row * self.map.size[0] + column);
+        energy.map_or(0.0, |&energy| f64::from(energy) / self.map.solid_angle_sr(row))
+    }
+}
+
+fn at_sensor(
+    rays: &Rays,
+    sensor: &Sensor,
+    suns: &[(Vec3, f64, f64)],
+    sky: &Sky,
+    casting: Casting,
+    number: u64,
+) -> Exposure {
+    let from_m = sensor.position_m + sensor.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
+    if is_inside(rays, from_m) {
+        return Exposure::none(Status::InSolid);
+    }
+    let mut exposure = Exposure::none(Status::Dark);
+    for &(direction, energy_kwh_m2, hours) in suns {
+        let cosine = sensor.normal.map_or(1.0, |normal| direction.dot(normal));
+        if cosine > 0.0 {
+            let passes = f64::from(rays.from_afar(from_m, direction));
+            exposure.beam_kwh_m2 += energy_kwh_m2 * f64::from(cosine) * passes;
+            exposure.sun_h += if passes > 0.0 { hours } else { 0.0 };
+        }
+    }
+
+    // The mean of each block, of what the sky brings and of how much of it is seen.
+    let each = casting.sky_rays.div_ceil(BLOCKS).max(1);
+    let blocks: Vec<[f64; 2]> = (0..BLOCKS)
+        .map(|block| {
+            let offset = sequence::offset(casting.seed, OFFSETS + number * u64::from(BLOCKS) + u64::from(block));
+            let (mut energy, mut seen) = (0.0, 0.0);
+            for index in 0..each {
+                let square = sequence::square(index, offset);
+                let direction = match sensor.normal {
+                    Some(normal) => sequence::cosine_about(normal, square),
+                    None => sequence::on_sphere([square[0] / 2.0, square[1]]),
+                };
+                if direction.z > 0.0 {
+                    let passes = f64::from(rays.from_afar(from_m, direction));
+                    energy += passes * sky.radiance_kwh_m2_sr(direction.as_dvec3());
+                    seen += passes;
+                }
+            }
+            // By the density of the directions: cos / pi, or 1 / (2 pi) over the upper half.
+            let solid_angle = if sensor.normal.is_some() { PI } else { 2.0 * PI };
+            [solid_angle * energy / f64::from(each), seen / f64::from(each)]
+        })
+        .collect();
+    let mean = |part: usize| blocks.iter().map(|block| block[part]).sum::<f64>() / f64::from(BLOCKS);
+    (exposure.sky_kwh_m2, exposure.svf) = (mean(0), mean(1));
+    let spread: f64 = blocks.iter().map(|block| (block[0] - exposure.sky_kwh_m2).powi(2)).sum();
+    exposure.error_kwh_m2 = (spread / f64::from(BLOCKS * (BLOCKS - 1))).sqrt();
+    if exposure.total_kwh_m2() > 0.0 {
+        exposure.status = Status::Ok;
+    }
+    exposure
+}
+
+/// Whether most of what is seen from a point are backs of surfaces.
+fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
+    let looks =
+        (0..LOOKS).filter_map(|look| rays.closest(from_m, sequence::spiral(look, LOOKS, [0.37, 0.71]), f32::INFINITY));
+    let (backs, fronts) =
+        looks.fold((0, 0), |(backs, fronts), hit| if hit.front { (backs, fronts + 1) } else { (backs + 1, fronts) });
+    // A sheet over open ground shows its back to those who stand under it, and the sky beside it.
+    backs > fronts && backs * 2 > LOOKS
+}

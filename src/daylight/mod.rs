@@ -1,0 +1,51 @@
+//! What does a surface receive from sun and sky over a period?
+//!
+//! [`Exposure`] is the answer at a sensor: the beam of the sun, the light of the sky, how much of the sky is seen. [`cast`]
+//! finds it by rays, every sun and as many directions of the sky as are asked for: the truth that faster ways are held to.
+//!
+//! Limits: what surfaces and the ground send back is not in it yet; `reflected` is 0.
+
+pub mod cast;
+
+use crate::light::Status;
+
+/// What a sensor receives over a period. With a normal: on that side of a plane, weighted by the cosine; without one: from all
+/// around, unweighted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exposure {
+    /// From the sun, kWh/m2.
+    pub beam_kwh_m2: f64,
+    /// From the sky, kWh/m2.
+    pub sky_kwh_m2: f64,
+    /// From surfaces, kWh/m2.
+    pub reflected_kwh_m2: f64,
+    /// Standard error of the sky's part, kWh/m2.
+    pub error_kwh_m2: f64,
+    /// Sky view factor, 0 to 1: the visible part of the sky, by the cosine to the normal (open ground 1, a wall 0.5);
+    /// without a normal by solid angle.
+    pub svf: f64,
+    /// Hours in which the sun shines on it.
+    pub sun_h: f64,
+    /// Whether it has a value, sees nothing, or lies inside something.
+    pub status: Status,
+}
+
+impl Exposure {
+    /// Nothing, for a reason.
+    pub fn none(status: Status) -> Self {
+        Self {
+            beam_kwh_m2: 0.0,
+            sky_kwh_m2: 0.0,
+            reflected_kwh_m2: 0.0,
+            error_kwh_m2: 0.0,
+            svf: 0.0,
+            sun_h: 0.0,
+            status,
+        }
+    }
+
+    /// All parts together, kWh/m2.
+    pub fn total_kwh_m2(&self) -> f64 {
+        self.beam_kwh_m2 + self.sky_kwh_m2 + self.reflected_kwh_m2
+    }
+}
