@@ -12,7 +12,9 @@ use super::perez::Perez;
 use super::spectrum::Band;
 use super::steps::Step;
 use super::term::{Skies, Term};
+use crate::job::{Cancel, Cancelled};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How a sky's light is spread.
@@ -56,11 +58,28 @@ pub struct Haze {
     pub band: Band,
 }
 
+/// Steps whose skies are scaled at once: some milliseconds.
+const CHUNK: usize = 512;
+
 /// The skies of many steps, each scaled to its diffuse irradiance: the sum of a step's terms is its sky, W/m2/sr. Each term
 /// comes with the number of its step; a step without diffuse light has none.
 ///
-/// About 3 us a step for Perez, three times that for Hosek, most of it the integral.
-pub fn skies(model: SkyModel, haze: Haze, steps: &[Step]) -> Vec<(usize, Term)> {
+/// About 7 us a step for Perez, three times that for Hosek, most of it the integral; on all threads.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn skies(model: SkyModel, haze: Haze, steps: &[Step], cancel: &Cancel) -> Result<Vec<(usize, Term)>, Cancelled> {
+    let chunks = steps.par_chunks(CHUNK).enumerate().map(|(chunk, steps)| {
+        cancel.check()?;
+        let terms = scaled(model, haze, steps);
+        Ok(terms.into_iter().map(|(number, term)| (chunk * CHUNK + number, term)).collect())
+    });
+    let chunks: Result<Vec<Vec<_>>, Cancelled> = chunks.collect();
+    Ok(chunks?.concat())
+}
+
+/// The skies of some steps, by their numbers among these.
+fn scaled(model: SkyModel, haze: Haze, steps: &[Step]) -> Vec<(usize, Term)> {
     let lit = steps.iter().enumerate().filter(|(_, step)| step.dhi_w_m2 > 0.0);
     let mut terms: Vec<(usize, Term)> =
         lit.flat_map(|(number, step)| shape(model, haze, step).into_iter().map(move |term| (number, term))).collect();
@@ -111,12 +130,13 @@ fn of_channel(towards_sun: DVec3, channel: Channel) -> Term {
     Term { towards_sun, weight, a, b, least: f64::NEG_INFINITY, floor: 0.0, lift: 0.01, k, c, d, e, f, h, i }
 }
 
-/// The horizontal irradiance of each term, `int L cos z dw`, within 0.02% of itself.
+/// The horizontal irradiance of each term, `int L cos z dw`, within 0.1% of itself, 0.02% rms
+/// over suns and irradiances at random; the worst are the sharp aureoles of very clear skies.
 ///
 /// Gauss's rule in elevation, the trapezoid one in azimuth about the sun's, on the half of the sky that the other mirrors.
 fn horizontal(terms: &[Term]) -> Vec<f64> {
-    const RINGS: usize = 20;
-    const SECTORS: usize = 20;
+    const RINGS: usize = 24;
+    const SECTORS: usize = 40;
     let facing_north: Vec<Term> = terms
         .iter()
         .map(|term| {
@@ -161,4 +181,71 @@ fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
         (x, 2.0 / ((1.0 - x * x) * slope * slope))
     };
     (0..count).map(zero).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::towards;
+
+    /// Midpoints of 400 x 400 cells, against the few points of a Gauss rule.
+    #[test]
+    fn a_sky_brings_its_diffuse_irradiance() {
+        let (rings, sectors) = (400, 400);
+        let mut largest = 0.0_f64;
+        for model in SkyModel::ALL {
+            for (elevation_deg, dni_w_m2, turbidity) in [
+                (0.0_f64, 0.0, 1.0),
+                (2.0, 60.0, 3.0),
+                (12.0, 400.0, 2.0),
+                (35.0, 0.0, 10.0),
+                (35.0, 850.0, 1.0),
+                (60.0, 300.0, 6.0),
+                (89.9, 950.0, 2.0),
+            ] {
+                let step = Step {
+                    time: jiff::civil::date(2025, 6, 1).at(12, 0, 0, 0),
+                    hours: 1.0,
+                    sun: crate::sky::Sun { azimuth_rad: 1.0, elevation_rad: elevation_deg.to_radians() },
+                    dni_w_m2,
+                    dhi_w_m2: 80.0,
+                    eccentricity: 1.0,
+                };
+                let haze = Haze { turbidity, ground_albedo: 0.2, band: Band::Broadband };
+                let terms = skies(model, haze, &[step], &Cancel::new()).unwrap();
+                let mut sum = 0.0;
+                for ring in 0..rings {
+                    // Equal steps of sin^2 are equal steps of the cosine-weighted solid angle.
+                    let elevation_rad = ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt().acos();
+                    for sector in 0..sectors {
+                        let direction = towards(TAU * (f64::from(sector) + 0.5) / f64::from(sectors), elevation_rad);
+                        sum += terms.iter().map(|(_, term)| term.radiance(direction)).sum::<f64>();
+                    }
+                }
+                let off = sum * PI / f64::from(rings * sectors) / step.dhi_w_m2 - 1.0;
+                println!("{model:?} {elevation_deg} {dni_w_m2} {turbidity}: {off:.6}");
+                largest = largest.max(off.abs());
+            }
+        }
+        assert!(largest < 1e-3, "{largest}");
+    }
+
+    #[test]
+    fn chunks_number_their_steps_on() {
+        let sun = crate::sky::Sun { azimuth_rad: 1.0, elevation_rad: 0.5 };
+        let time = jiff::civil::date(2025, 6, 1).at(12, 0, 0, 0);
+        let step = |number: usize| {
+            let dhi_w_m2 = (number % 3) as f64;
+            Step { time, hours: 1.0, sun, dni_w_m2: 0.0, dhi_w_m2, eccentricity: 1.0 }
+        };
+        let steps: Vec<Step> = (0..2 * CHUNK + 7).map(step).collect();
+        let haze = Haze { turbidity: 3.0, ground_albedo: 0.2, band: Band::Broadband };
+        let terms = skies(SkyModel::Isotropic, haze, &steps, &Cancel::new()).unwrap();
+        let lit: Vec<usize> = (0..steps.len()).filter(|number| number % 3 > 0).collect();
+        assert_eq!(terms.iter().map(|(number, _)| *number).collect::<Vec<_>>(), lit);
+        for (number, term) in terms {
+            let level = term.radiance(DVec3::Z) * PI / steps[number].dhi_w_m2;
+            assert!((level - 1.0).abs() < 1e-5, "{number}: {level}");
+        }
+    }
 }
