@@ -66,6 +66,12 @@ pub fn relative_air_mass(elevation_rad: f64) -> f64 {
     1.0 / (elevation_rad.sin() + 0.505_72 * (6.079_95 + elevation_rad.to_degrees()).powf(-1.6364))
 }
 
+/// The same by Kasten's older fit (1966), with which Perez' sky and the published transmittances were made, by the zenith
+/// angle of a sun at or above the horizon: 1 overhead, 36.5 on the horizon.
+pub fn kasten_air_mass(zenith_rad: f64) -> f64 {
+    1.0 / (zenith_rad.cos() + 0.15 * (93.885 - zenith_rad.to_degrees()).powf(-1.253))
+}
+
 /// The pressure of the standard atmosphere at a height, metres, as a share of 1013.25 hPa.
 pub fn relative_pressure(altitude_m: f64) -> f64 {
     // The polytropic atmosphere of constant lapse rate, 6.5 K a km; its top is at 44 km.

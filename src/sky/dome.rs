@@ -12,7 +12,9 @@ use super::perez::Perez;
 use super::spectrum::Band;
 use super::steps::Step;
 use super::term::{Skies, Term};
+use crate::job::{Cancel, Cancelled};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How a sky's light is spread.
@@ -56,11 +58,28 @@ pub struct Haze {
     pub band: Band,
 }
 
+/// Steps whose skies are scaled at once: some milliseconds.
+const CHUNK: usize = 512;
+
 /// The skies of many steps, each scaled to its diffuse irradiance: the sum of a step's terms is its sky, W/m2/sr. Each term
 /// comes with the number of its step; a step without diffuse light has none.
 ///
-/// About 3 us a step for Perez, three times that for Hosek, most of it the integral.
-pub fn skies(model: SkyModel, haze: Haze, steps: &[Step]) -> Vec<(usize, Term)> {
+/// About 7 us a step for Perez, three times that for Hosek, most of it the integral; on all threads.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn skies(model: SkyModel, haze: Haze, steps: &[Step], cancel: &Cancel) -> Result<Vec<(usize, Term)>, Cancelled> {
+    let chunks = steps.par_chunks(CHUNK).enumerate().map(|(chunk, steps)| {
+        cancel.check()?;
+        let terms = scaled(model, haze, steps);
+        Ok(terms.into_iter().map(|(number, term)| (chunk * CHUNK + number, term)).collect())
+    });
+    let chunks: Result<Vec<Vec<_>>, Cancelled> = chunks.collect();
+    Ok(chunks?.concat())
+}
+
+/// The skies of some steps, by their numbers among these.
+fn scaled(model: SkyModel, haze: Haze, steps: &[Step]) -> Vec<(usize, Term)> {
     let lit = steps.iter().enumerate().filter(|(_, step)| step.dhi_w_m2 > 0.0);
     let mut terms: Vec<(usize, Term)> =
         lit.flat_map(|(number, step)| shape(model, haze, step).into_iter().map(move |term| (number, term))).collect();
@@ -111,12 +130,13 @@ fn of_channel(towards_sun: DVec3, channel: Channel) -> Term {
     Term { towards_sun, weight, a, b, least: f64::NEG_INFINITY, floor: 0.0, lift: 0.01, k, c, d, e, f, h, i }
 }
 
-/// The horizontal irradiance of each term, `int L cos z dw`, within 0.1% of itself.
+/// The horizontal irradiance of each term, `int L cos z dw`, within 0.1% of itself, 0.02% rms
+/// over suns and irradiances at random; the worst are the sharp aureoles of very clear skies.
 ///
 /// Gauss's rule in elevation, the trapezoid one in azimuth about the sun's, on the half of the sky that the other mirrors.
 fn horizontal(terms: &[Term]) -> Vec<f64> {
-    const RINGS: usize = 20;
-    const SECTORS: usize = 20;
+    const RINGS: usize = 24;
+    const SECTORS: usize = 40;
     let facing_north: Vec<Term> = terms
         .iter()
         .map(|term| {
@@ -195,7 +215,8 @@ mod tests {
                 let step = [step(elevation_deg, dni, dhi)];
                 for (model, band) in SkyModel::ALL.into_iter().flat_map(|model| Band::ALL.map(|band| (model, band))) {
                     let haze = Haze { turbidity: 2.0 + dhi / 30.0, ground_albedo: 0.2, band };
-                    let terms: Vec<Term> = skies(model, haze, &step).into_iter().map(|(_, term)| term).collect();
+                    let terms: Vec<Term> =
+                        skies(model, haze, &step, &Cancel::new()).unwrap().into_iter().map(|(_, term)| term).collect();
                     let off = integral(&terms) / dhi - 1.0;
                     worst = worst.max(off.abs());
                     assert!(off.abs() < 1e-3, "{model:?} {band} {elevation_deg} {dni} {dhi}: {off}");
@@ -210,7 +231,7 @@ mod tests {
         let haze = Haze { turbidity: 3.0, ground_albedo: 0.2, band: Band::Broadband };
         let steps = [step(30.0, 500.0, 0.0), step(30.0, 0.0, 10.0), step(0.0, 0.0, f64::MIN_POSITIVE)];
         for model in SkyModel::ALL {
-            let found = skies(model, haze, &steps);
+            let found = skies(model, haze, &steps, &Cancel::new()).unwrap();
             assert!(found.iter().all(|(number, _)| *number > 0), "{model:?}");
             assert!(found.iter().all(|(_, term)| term.weight.is_finite()), "{model:?}");
         }
@@ -219,9 +240,28 @@ mod tests {
     #[test]
     fn gauss_is_right_for_high_powers() {
         for power in [0, 2, 10, 39] {
-            let sum: f64 = gauss_legendre(20).iter().map(|(place, weight)| weight * place.powi(power)).sum();
+            let sum: f64 = gauss_legendre(RINGS).iter().map(|(place, weight)| weight * place.powi(power)).sum();
             let exact = if power % 2 == 0 { 2.0 / f64::from(power + 1) } else { 0.0 };
             assert!((sum - exact).abs() < 1e-12, "{power}: {sum}");
+        }
+    }
+
+    #[test]
+    fn chunks_number_their_steps_on() {
+        let sun = crate::sky::Sun { azimuth_rad: 1.0, elevation_rad: 0.5 };
+        let time = jiff::civil::date(2025, 6, 1).at(12, 0, 0, 0);
+        let step = |number: usize| {
+            let dhi_w_m2 = (number % 3) as f64;
+            Step { time, hours: 1.0, sun, dni_w_m2: 0.0, dhi_w_m2, eccentricity: 1.0 }
+        };
+        let steps: Vec<Step> = (0..2 * CHUNK + 7).map(step).collect();
+        let haze = Haze { turbidity: 3.0, ground_albedo: 0.2, band: Band::Broadband };
+        let terms = skies(SkyModel::Isotropic, haze, &steps, &Cancel::new()).unwrap();
+        let lit: Vec<usize> = (0..steps.len()).filter(|number| number % 3 > 0).collect();
+        assert_eq!(terms.iter().map(|(number, _)| *number).collect::<Vec<_>>(), lit);
+        for (number, term) in terms {
+            let level = term.radiance(DVec3::Z) * PI / steps[number].dhi_w_m2;
+            assert!((level - 1.0).abs() < 1e-5, "{number}: {level}");
         }
     }
 }

@@ -10,7 +10,7 @@
 
 use super::Place;
 use super::events::SUNRISE_ELEVATION_DEG;
-use super::sun::{SunError, position};
+use super::sun::{SunError, delta_t_s, position_with_delta_t};
 use jiff::SignedDuration;
 use jiff::civil::Date;
 
@@ -25,10 +25,11 @@ const MOST_STEPS: usize = 60;
 /// # Errors
 /// A place or a year outside its bounds.
 pub fn lit_hours(place: &Place, date: Date) -> Result<Vec<[f64; 2]>, SunError> {
+    let delta_t_s = delta_t_s(date)?;
     let above = |hour: f64| -> Result<f64, SunError> {
         let since_midnight = SignedDuration::from_nanos((hour * 3.6e12).round() as i64);
         let time = date.at(0, 0, 0, 0).checked_add(since_midnight).map_err(|_| SunError::Calendar)?;
-        Ok(position(place, time, None)?.elevation_rad - SUNRISE_ELEVATION_DEG.to_radians())
+        Ok(position_with_delta_t(place, time, None, delta_t_s)?.elevation_rad - SUNRISE_ELEVATION_DEG.to_radians())
     };
 
     // The two midnights, and noon and midnight of the sun between them.
@@ -142,6 +143,13 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_last_day_of_the_years_that_are_known_has_its_light() {
+        let place = Place::from_degrees(0.0, 0.0, 0.0);
+        let [[from, to]] = lit_hours(&place, date(3000, 12, 31)).unwrap()[..] else { panic!("one stretch") };
+        assert!((to - from - 12.1).abs() < 0.1);
     }
 
     #[test]

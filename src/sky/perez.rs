@@ -15,6 +15,8 @@
 //! of single clouds. Within a row brightness is kept to what skies are, as Radiance's `gendaymtx` does; between two rows
 //! the sky jumps.
 
+use super::clear::kasten_air_mass;
+use super::within;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -143,14 +145,14 @@ impl Perez {
     /// All input is safe: a sun below the horizon is taken as on it, negative irradiance as none, and without any diffuse
     /// irradiance the sky is clear where there is sun and overcast where there is none.
     pub fn new(sun_zenith_rad: f64, dni_w_m2: f64, dhi_w_m2: f64, eccentricity: f64) -> Self {
-        let zenith = kept(sun_zenith_rad, (LEAST_ZENITH_RAD, FRAC_PI_2));
+        let zenith = within(sun_zenith_rad, (LEAST_ZENITH_RAD, FRAC_PI_2));
         let (dni, dhi) = (dni_w_m2.max(0.0), dhi_w_m2.max(0.0));
 
         // How clear and how bright.
         let steep = 1.041 * zenith.powi(3);
         let ratio = if dni > 0.0 { dni / dhi } else { 0.0 };
-        let clearness = kept((1.0 + ratio + steep) / (1.0 + steep), CLEARNESS);
-        let brightness = kept(dhi * air_mass(zenith) / (SOLAR_CONSTANT_W_M2 * eccentricity), BRIGHTNESS);
+        let clearness = within((1.0 + ratio + steep) / (1.0 + steep), CLEARNESS);
+        let brightness = within(dhi * kasten_air_mass(zenith) / (SOLAR_CONSTANT_W_M2 * eccentricity), BRIGHTNESS);
 
         // The five parameters.
         let dim = clearness > DIM.0 && clearness < DIM.1;
@@ -178,8 +180,8 @@ impl Perez {
     /// The radiance of a direction by the cosines of its angles to the zenith and to the sun, in a unit of this sky's own.
     /// Never negative, never NaN; below the horizon as on it.
     pub fn relative(&self, cos_zenith: f64, cos_gamma: f64) -> f64 {
-        let cos_zenith = kept(cos_zenith, (LEAST_COS_ZENITH, 1.0));
-        let cos_gamma = kept(cos_gamma, (-1.0, 1.0));
+        let cos_zenith = within(cos_zenith, (LEAST_COS_ZENITH, 1.0));
+        let cos_gamma = within(cos_gamma, (-1.0, 1.0));
         let gradation = 1.0 + self.a * (self.b / cos_zenith).exp();
         let indicatrix = 1.0 + self.c * (self.d * cos_gamma.acos()).exp() + self.e * cos_gamma * cos_gamma;
         // Each by itself: two that are negative must not make light.
@@ -213,16 +215,6 @@ fn bin(clearness: f64) -> (usize, &'static Bin) {
     let [first, others @ ..] = &BINS;
     let begun = others.iter().enumerate().rfind(|(_, bin)| clearness >= bin.clearness_from);
     begun.map_or((0, first), |(before, bin)| (before + 1, bin))
-}
-
-/// A value within bounds; the lower one for what is no number, which `clamp` would pass on.
-fn kept(value: f64, (low, high): (f64, f64)) -> f64 {
-    value.max(low).min(high)
-}
-
-/// The relative air mass (Kasten 1966), which the model was fitted with; 36.5 with the sun on the horizon.
-fn air_mass(zenith_rad: f64) -> f64 {
-    1.0 / (zenith_rad.cos() + 0.15 * (93.885 - zenith_rad.to_degrees()).powf(-1.253))
 }
 
 #[cfg(test)]

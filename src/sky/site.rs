@@ -4,7 +4,6 @@
 //! have any. [`Outdoors`] is the site with all of that decided, and says what was decided; its steps are what the exposure
 //! map, and whatever else adds up a period, are made of.
 
-use super::Place;
 use super::clear::{ClearAir, Irradiance, irradiance};
 use super::dome::{Haze, SkyModel};
 use super::hosek::BandNotReached;
@@ -12,6 +11,8 @@ use super::spectrum::{Atmosphere, Band, Spectrum};
 use super::steps::{Period, Steps, of_clear_sky, of_weather};
 use super::sun::{SOLAR_CONSTANT_W_M2, SunError};
 use super::weather::Weather;
+use super::{Place, Sun};
+use crate::job::Cancel;
 use crate::scene::Site;
 
 /// The year of a clear period that names none; not a leap year.
@@ -25,6 +26,10 @@ const TURBIDITY: f64 = 3.0;
 
 /// Reflectance of the ground where none is named: grass, and soil.
 const GROUND_ALBEDO: f64 = 0.2;
+
+/// Steps longer than this are told of, minutes: a year's global irradiation under a clear sky at 42 degrees north is 0.1% too
+/// high with steps of an hour, 0.7% of two, 1.9% of three and 72% with one step a day.
+const LONG_MIN: f64 = 60.0;
 
 /// What the sun and the sky bring when no cloud is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,6 +128,12 @@ impl Outdoors {
             last: day(site.end, year_round.last),
             step_min: site.step_min.unwrap_or(year_round.step_min),
         };
+        if period.step_min > LONG_MIN {
+            notes.push(format!(
+                "a step of {} minutes has one sun for all of it; an hour or less is closer",
+                period.step_min
+            ));
+        }
         let is_leap = [period.first, period.last].contains(&(2, 29));
         let year = if is_leap { LEAP_YEAR } else { YEAR };
         if weather.is_none() && site.turbidity.is_none() {
@@ -161,23 +172,33 @@ impl Outdoors {
         Ok(Self { haze: Haze { band, ..self.haze }, clear_sky: ClearSky::Spectral, ..self })
     }
 
-    /// The steps of the period: the weather's, or a clear sky's.
+    /// The steps of the period: the weather's, or a clear sky's. A year of hours takes some tens of milliseconds, of minutes
+    /// a second or two, and ten under a spectral sky.
     ///
     /// # Errors
     /// A place or a year beyond what the sun's position is known for.
     pub fn steps(&self) -> Result<Steps, SunError> {
+        self.steps_unless(&Cancel::new())
+    }
+
+    /// [`Outdoors::steps`] of a run that may be stopped.
+    ///
+    /// # Errors
+    /// As there, or [`SunError::Cancelled`].
+    pub fn steps_unless(&self, cancel: &Cancel) -> Result<Steps, SunError> {
         if let Some(weather) = &self.weather {
-            return of_weather(&self.place, weather, &self.period);
+            return of_weather(&self.place, weather, &self.period, cancel);
         }
         let Haze { turbidity, ground_albedo, band } = self.haze;
         let air = ClearAir { linke_turbidity: turbidity, altitude_m: self.place.altitude_m };
         let atmosphere = Atmosphere { ground_albedo, ..Atmosphere::new(turbidity) };
-        of_clear_sky(&self.place, self.year, &self.period, |sun, eccentricity| match self.clear_sky {
+        let clear = |sun: Sun, eccentricity| match self.clear_sky {
             ClearSky::Ineichen => irradiance(sun.elevation_rad, SOLAR_CONSTANT_W_M2 * eccentricity, air),
             ClearSky::Spectral => {
                 let spectrum = Spectrum::clear(sun.elevation_rad, eccentricity, &atmosphere);
                 Irradiance { dni_w_m2: spectrum.beam_w_m2(band), dhi_w_m2: spectrum.diffuse_w_m2(band) }
             }
-        })
+        };
+        of_clear_sky(&self.place, self.year, &self.period, clear, cancel)
     }
 }

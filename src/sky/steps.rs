@@ -15,6 +15,7 @@ use super::lit::lit_hours;
 use super::sun::{Air, SunError, eccentricity, position};
 use super::weather::{Hour, Weather};
 use super::{Place, Sun};
+use crate::job::Cancel;
 use jiff::SignedDuration;
 use jiff::civil::{Date, DateTime};
 use rayon::prelude::*;
@@ -69,7 +70,7 @@ pub struct Step {
 /// A period in steps, in the order of time.
 #[derive(Debug, Clone, Default)]
 pub struct Steps {
-    /// The steps with light in them.
+    /// The steps with the sun up, and those without in which weather has diffuse light.
     pub steps: Vec<Step>,
     /// Beam that the weather has in hours without sun, and that is left out, kWh/m2.
     pub night_beam_kwh_m2: f64,
@@ -117,14 +118,14 @@ struct Piece {
     dhi_wh_m2: f64,
 }
 
-/// The steps of a period at a place under measured weather, its own or a neighbour's; dates are those of its own rows. About 0.2 ms a
-/// day.
+/// The steps of a period at a place under measured weather, its own or a neighbour's; dates are those of its own rows.
+/// About 0.2 ms a day of hours.
 ///
 /// # Errors
-/// A place or a year beyond what the sun's position is known for.
-pub fn of_weather(place: &Place, weather: &Weather, period: &Period) -> Result<Steps, SunError> {
+/// A place or a year beyond what the sun's position is known for, or [`SunError::Cancelled`].
+pub fn of_weather(place: &Place, weather: &Weather, period: &Period, cancel: &Cancel) -> Result<Steps, SunError> {
     let hours: Vec<&Hour> = weather.hours.iter().filter(|hour| period.holds(hour.start.date())).collect();
-    let light = light_by_date(place, hours.iter().map(|hour| hour.start.date()))?;
+    let light = light_by_date(place, hours.iter().map(|hour| hour.start.date()), cancel)?;
 
     let mut found = Steps::default();
     let mut pieces = Vec::new();
@@ -148,7 +149,7 @@ pub fn of_weather(place: &Place, weather: &Weather, period: &Period) -> Result<S
         }
     }
     pieces.retain(|piece| piece.dni_wh_m2 > 0.0 || piece.dhi_wh_m2 > 0.0);
-    found.steps = steps(place, &joined(pieces, period.step_min / 60.0))?;
+    found.steps = steps(place, &joined(pieces, period.step_min / 60.0), cancel)?;
     found.measured_ghi_kwh_m2 = hours.iter().map(|hour| hour.ghi_w_m2.map(|ghi| ghi * hour.length_h / 1000.0)).sum();
     if found.night_beam_kwh_m2 > 0.0 {
         found.warnings.push(format!(
@@ -165,16 +166,17 @@ pub fn of_weather(place: &Place, weather: &Weather, period: &Period) -> Result<S
 /// The steps of a period of a year under a clear sky, which answers for the sun and the day's eccentricity.
 ///
 /// # Errors
-/// A place or a year beyond what the sun's position is known for.
+/// A place or a year beyond what the sun's position is known for, or [`SunError::Cancelled`].
 pub fn of_clear_sky(
     place: &Place,
     year: i16,
     period: &Period,
     clear: impl Fn(Sun, f64) -> Irradiance + Sync,
+    cancel: &Cancel,
 ) -> Result<Steps, SunError> {
     let first = Date::new(year, 1, 1).map_err(|_| SunError::Calendar)?;
     let days = first.series(jiff::ToSpan::day(1)).take_while(|date| date.year() == year);
-    let light = light_by_date(place, days.filter(|&date| period.holds(date)))?;
+    let light = light_by_date(place, days.filter(|&date| period.holds(date)), cancel)?;
     let pieces: Vec<Piece> = light
         .iter()
         .flat_map(|(&date, spans)| spans.iter().map(move |&span| (date, span)))
@@ -182,19 +184,28 @@ pub fn of_clear_sky(
         .map(|(date, hours)| Piece { date, hours, lit_h: hours[1] - hours[0], dni_wh_m2: 0.0, dhi_wh_m2: 0.0 })
         .collect();
 
-    let mut found = steps(place, &joined(pieces, period.step_min / 60.0))?;
-    found.par_iter_mut().for_each(|step| {
+    let mut found = steps(place, &joined(pieces, period.step_min / 60.0), cancel)?;
+    found.par_iter_mut().try_for_each(|step| {
         let Irradiance { dni_w_m2, dhi_w_m2 } = clear(step.sun, step.eccentricity);
         (step.dni_w_m2, step.dhi_w_m2) = (dni_w_m2, dhi_w_m2);
-    });
+        cancel.check()
+    })?;
     Ok(Steps { steps: found, ..Steps::default() })
 }
 
 /// When the sun is up on each date, hours since midnight.
-fn light_by_date(place: &Place, dates: impl Iterator<Item = Date>) -> Result<BTreeMap<Date, Vec<[f64; 2]>>, SunError> {
+fn light_by_date(
+    place: &Place,
+    dates: impl Iterator<Item = Date>,
+    cancel: &Cancel,
+) -> Result<BTreeMap<Date, Vec<[f64; 2]>>, SunError> {
     let dates: std::collections::BTreeSet<Date> = dates.collect();
     let dates: Vec<Date> = dates.into_iter().collect();
-    dates.into_par_iter().map(|date| Ok((date, lit_hours(place, date)?))).collect()
+    let lit = |date| {
+        cancel.check()?;
+        Ok((date, lit_hours(place, date)?))
+    };
+    dates.into_par_iter().map(lit).collect()
 }
 
 /// The parts of `spans` inside a stretch.
@@ -234,8 +245,9 @@ fn joined(pieces: Vec<Piece>, step_h: f64) -> Vec<Piece> {
 }
 
 /// Steps of pieces, each with its sun.
-fn steps(place: &Place, pieces: &[Piece]) -> Result<Vec<Step>, SunError> {
+fn steps(place: &Place, pieces: &[Piece], cancel: &Cancel) -> Result<Vec<Step>, SunError> {
     let step = |piece: &Piece| {
+        cancel.check()?;
         let middle_h = (piece.hours[0] + piece.hours[1]) / 2.0;
         let since_midnight = SignedDuration::from_nanos((middle_h * 3.6e12).round() as i64);
         let midnight = piece.date.at(0, 0, 0, 0);

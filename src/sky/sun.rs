@@ -6,6 +6,7 @@
 //! once the upper limb is below the horizon; near the horizon real air moves the sun by a few tenths of a degree either way.
 
 use super::{Place, Sun};
+use crate::job::Cancelled;
 use jiff::civil::{Date, DateTime, date};
 use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t, time::JulianDate};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -61,6 +62,9 @@ pub enum SunError {
     /// A time fell off the calendar.
     #[error("a date outside year -9999 to 9999")]
     Calendar,
+    /// Whoever asked for many positions wants them no more.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Where the sun stands at a local standard time, seen from the ground (topocentric), by SPA.

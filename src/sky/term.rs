@@ -264,7 +264,7 @@ fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// `e^x` within 3e-7 of itself, without a branch; beyond -87 and 88 as there.
+/// `e^x` without a branch: within 6e-7 of itself for `x` from -5 to 5, 6e-6 over all from -87 to 88, and beyond as there.
 #[inline(always)]
 fn exp(x: f32) -> f32 {
     /// 1.5 x 2^23: adding it leaves the nearest integer in the lowest bits.

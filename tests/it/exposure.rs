@@ -337,6 +337,12 @@ fn sky_refuses_what_it_cannot_answer_in_a_line() {
         (vec!["sky", MADE, "--turbidity", "12"], 2, "outside 1 to 10"),
         (vec!["sky", MADE, "--band", "visible"], 1, "weather files have all light together"),
         (vec!["sky", "--latitude", "5", "--longitude", "5", "--band", "infrared"], 1, "720 nm"),
+        (vec!["sky", MADE, "--clear-sky", "spectral"], 1, "the weather says"),
+        (
+            vec!["sky", "--latitude", "5", "--longitude", "5", "--clear-sky", "ineichen", "--band", "visible"],
+            1,
+            "visible light is spectral",
+        ),
         (vec!["sky", "--latitude", "95", "--longitude", "5"], 2, "outside -90 to 90"),
     ] {
         let output = run(&arguments);

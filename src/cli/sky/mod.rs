@@ -18,8 +18,8 @@ use crate::sky::dome::Haze;
 use crate::sky::events;
 use crate::sky::map::{ExposureMap, MapSettings};
 use crate::sky::picture::{Colours, Picture};
-use crate::sky::site::Outdoors;
-use crate::sky::spectrum::Atmosphere;
+use crate::sky::site::{ClearSky, Outdoors};
+use crate::sky::spectrum::{Atmosphere, Band};
 use crate::sky::steps::Steps;
 use crate::sky::sun::{Air, eccentricity, position};
 use crate::sky::weather::{Weather, WeatherFormat};
@@ -44,7 +44,7 @@ pub fn run(args: &SkyArgs, cancel: &Cancel) -> Result<()> {
     let (name, outdoors, mut warnings) = open(args, &stages, cancel)?;
 
     let begin = Instant::now();
-    let steps = outdoors.steps().with_context(|| name.clone())?;
+    let steps = outdoors.steps_unless(cancel).with_context(|| name.clone())?;
     let settings = MapSettings {
         size: args.size,
         model: outdoors.model,
@@ -98,6 +98,12 @@ fn open(args: &SkyArgs, stages: &Stages, cancel: &Cancel) -> Result<(String, Out
 
     let mut outdoors = Outdoors::of(&args.over(site), weather).with_context(|| name.clone())?;
     outdoors.model = args.model.unwrap_or(outdoors.model);
+    if args.clear_sky.is_some() && outdoors.weather.is_some() {
+        bail!("{name}: --clear-sky is for a sky without weather; here the weather says what sun and sky bring");
+    }
+    if args.clear_sky == Some(ClearSky::Ineichen) && args.band != Band::Broadband {
+        bail!("{name}: --clear-sky ineichen knows all light together; {} light is spectral", args.band);
+    }
     outdoors.clear_sky = args.clear_sky.unwrap_or(outdoors.clear_sky);
     outdoors.year = args.date.map_or(outdoors.year, |date| date.year());
     let outdoors = outdoors.in_band(args.band).with_context(|| name.clone())?;

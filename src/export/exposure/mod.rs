@@ -91,7 +91,8 @@ pub fn write_suns_csv(out: &mut dyn Write, map: &ExposureMap) -> io::Result<()> 
     writeln!(out, "time,azimuth_deg,elevation_deg,beam_kwh_m2")?;
     for sun in &map.suns {
         let [azimuth, elevation] = [sun.sun.azimuth_rad, sun.sun.elevation_rad].map(f64::to_degrees);
-        writeln!(out, "{},{azimuth:.4},{elevation:.4},{:.6}", sun.time, sun.energy_kwh_m2)?;
+        let clock = sun.time.strftime("%Y-%m-%dT%H:%M:%S");
+        writeln!(out, "{clock},{azimuth:.4},{elevation:.4},{:.6}", sun.energy_kwh_m2)?;
     }
     Ok(())
 }

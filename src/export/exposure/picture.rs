@@ -112,10 +112,12 @@ fn frame(map: &ExposureMap, title: &str, range: Range) -> String {
     // Writing to a string cannot fail.
     let mut put = |line: std::fmt::Arguments| _ = svg.write_fmt(line);
     let totals = map.totals;
+    // A day has too few for whole ones.
+    let places = if totals.ghi_kwh_m2 < 100.0 { 2 } else { 0 };
     let title = escaped(title);
     put(format_args!(r#"<text x="{left}" y="22" font-size="17">{title}</text>"#));
     put(format_args!(
-        r##"<text x="{left}" y="43" fill="#555">kWh/m²: global horizontal {:.0}, direct normal {:.0}, diffuse horizontal {:.0}</text>"##,
+        r##"<text x="{left}" y="43" fill="#555">kWh/m²: global horizontal {:.places$}, direct normal {:.places$}, diffuse horizontal {:.places$}</text>"##,
         totals.ghi_kwh_m2, totals.dni_kwh_m2, totals.dhi_kwh_m2
     ));
     put(format_args!(

@@ -55,9 +55,9 @@ fn whole(skies: &Skies, columns: usize, rows: usize, cancel: &Cancel) -> Result<
     let values: Result<Vec<Vec<f64>>, Cancelled> = (0..rows)
         .into_par_iter()
         .map(|row| {
-            cancel.check()?;
             let at_row = skies.row(elevation_rad(row, rows));
-            Ok((0..columns).map(|column| at_row.radiance(azimuth_rad(column, columns))).collect())
+            let value = |column| cancel.check().map(|()| at_row.radiance(azimuth_rad(column, columns)));
+            (0..columns).map(value).collect()
         })
         .collect();
     let rough = vec![f32::INFINITY; columns * (rows - 1)];
@@ -102,13 +102,8 @@ impl Samples {
     /// The grid of half the spacing.
     fn doubled(&self, skies: &Skies, tolerance: f64, cancel: &Cancel) -> Result<Self, Cancelled> {
         let (columns, rows) = (2 * self.columns, 2 * self.rows - 1);
-        let finer: Result<Vec<FineRow>, Cancelled> = (0..rows)
-            .into_par_iter()
-            .map(|row| {
-                cancel.check()?;
-                Ok(self.fine_row(skies, tolerance, row))
-            })
-            .collect();
+        let finer: Result<Vec<FineRow>, Cancelled> =
+            (0..rows).into_par_iter().map(|row| self.fine_row(skies, tolerance, row, cancel)).collect();
         let finer = finer?;
 
         // A cell is as rough as what was found wrong on it and at its corners.
@@ -127,20 +122,23 @@ impl Samples {
 
     /// One row of the finer grid: first, in a row between two of this grid, the points below and above one of it; then those
     /// between two columns.
-    fn fine_row(&self, skies: &Skies, tolerance: f64, row: usize) -> FineRow {
+    fn fine_row(&self, skies: &Skies, tolerance: f64, row: usize, cancel: &Cancel) -> Result<FineRow, Cancelled> {
         let (columns, rows) = (2 * self.columns, 2 * self.rows - 1);
         let mut fine = FineRow { values: vec![0.0; columns], off: vec![0.0; columns], evaluated: 0 };
         let mut sums: Option<Row> = None;
         let mut settle = |fine: &mut FineRow, column: usize, predicted: f64| {
             if self.roughness(row, column) <= tolerance as f32 {
                 fine.values[column] = predicted.max(0.0);
-                return;
+                return Ok(());
             }
+            // One sum of a year in minutes takes a millisecond, a row of them seconds.
+            cancel.check()?;
             let sums = sums.get_or_insert_with(|| skies.row(elevation_rad(row, rows)));
             let value = sums.radiance(azimuth_rad(column, columns));
             fine.values[column] = value;
             fine.off[column] = if value > 0.0 { ((predicted - value).abs() / value) as f32 } else { 0.0 };
             fine.evaluated += 1;
+            Ok(())
         };
 
         for column in 0..self.columns {
@@ -150,14 +148,14 @@ impl Samples {
             }
             let at = |step: isize| self.beyond((row / 2) as isize + step, |row| self.value(row, column));
             let predicted = middle([at(-1), at(0), at(1), at(2)]);
-            settle(&mut fine, 2 * column, predicted);
+            settle(&mut fine, 2 * column, predicted)?;
         }
         for column in (1..columns).step_by(2) {
             let at = |step: usize| fine.values[(column + columns + step - 3) % columns];
             let predicted = middle([at(0), at(2), at(4), at(6)]);
-            settle(&mut fine, column, predicted);
+            settle(&mut fine, column, predicted)?;
         }
-        fine
+        Ok(fine)
     }
 
     /// How far off cubics were found in the cells of this grid around a point of the finer one.

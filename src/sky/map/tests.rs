@@ -71,3 +71,35 @@ fn the_texels_hold_what_the_period_brings() {
         }
     }
 }
+
+#[test]
+fn the_least_that_counts_is_that_of_sorted_energies() {
+    // Halves are exact, so that sums do not depend on their order; many are alike.
+    let energies: Vec<f32> = (0..5000_u32).map(|number| ((number * 7919) % 613) as f32 * 0.5).collect();
+    for energies in [&energies[..], &energies[..1], &energies[..2], &energies[..1001], &[0.0; 9], &[]] {
+        let mut sorted = energies.to_vec();
+        sorted.sort_by(|a, b| b.total_cmp(a));
+        let all: f64 = sorted.iter().map(|&energy| f64::from(energy)).sum();
+        let held = sorted.iter().scan(0.0, |held, &energy| {
+            *held += f64::from(energy);
+            Some((energy, *held))
+        });
+        let want = held.into_iter().find(|(_, held)| *held >= COUNTED_ENERGY * all).map_or(0.0, |(energy, _)| energy);
+        assert_eq!(least_counted(energies), want, "of {}", energies.len());
+    }
+}
+
+#[test]
+fn a_flag_raised_on_the_way_stops_within_a_texel() {
+    // A year of quarters of an hour in every texel of a row of 8192 would take seconds.
+    let steps = clear(42.0, 3.0, Period { step_min: 15.0, ..Period::YEAR });
+    let cancel = Cancel::new();
+    let settings = MapSettings { size: [8192, 1], tolerance: None, ..MapSettings::default() };
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            cancel.cancel();
+        });
+        assert!(ExposureMap::build(&steps, &settings, &Quiet, &cancel).is_err());
+    });
+}

@@ -14,7 +14,9 @@ mod table;
 
 pub use table::{ROWS, TABLE};
 
+use super::clear::kasten_air_mass;
 use super::within;
+use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 /// Bands of the spectrum.
@@ -106,7 +108,7 @@ impl Spectrum {
             return spectrum;
         }
         let cos_zenith = sun_elevation_rad.sin().max(0.0);
-        let air_mass = air_mass(sun_elevation_rad);
+        let air_mass = kasten_air_mass((FRAC_PI_2 - sun_elevation_rad).max(0.0));
 
         let lit = spectrum.beam_w_m2_um.iter_mut().zip(&mut spectrum.diffuse_w_m2_um).zip(&TABLE);
         for ((beam, diffuse), row) in lit {
@@ -132,12 +134,6 @@ impl Spectrum {
     pub fn beam_xyz_klx(&self) -> [f64; 3] {
         observer::xyz_klx(&self.beam_w_m2_um)
     }
-}
-
-/// Kasten's relative air mass of a sun at or above the horizon: 1 at the zenith, 36.5 at the horizon.
-fn air_mass(sun_elevation_rad: f64) -> f64 {
-    let zenith_deg = 90.0 - sun_elevation_rad.to_degrees().min(90.0);
-    1.0 / (zenith_deg.to_radians().cos() + 0.15 * (93.885 - zenith_deg).powf(-1.253))
 }
 
 /// Shares of light that pass each constituent.
