@@ -19,7 +19,7 @@ const LATITUDE_DEG: f64 = 42.0;
 const TURBIDITY: f64 = 3.0;
 
 /// Step of the maps, minutes: so short that the suns of an hour run together.
-const STEP_MIN: f64 = 10.0;
+const STEP_MIN: f64 = 4.0;
 
 /// Step of the curves, minutes.
 const CURVE_STEP_MIN: f64 = 60.0;
@@ -122,7 +122,7 @@ fn chart_by_turbidity() -> Result<Chart, Box<dyn Error>> {
 }
 
 fn chart(title: String, x: Axis, curves: Vec<Curve>) -> Chart {
-    Chart { title, x, y: Axis::every("kWh/m\u{b2} a year", [0.0, 4000.0], 500.0), curves }
+    Chart { title, x, y: Axis::every("kWh/m\u{b2} a year", [0.0, 5000.0], 1000.0), curves }
 }
 
 /// What a year brings, along latitudes or turbidities.
