@@ -129,3 +129,28 @@ pub(super) fn colour(part: f64) -> [u8; 3] {
     let along = place - first as f64;
     std::array::from_fn(|band| (SCALE[first][band] * (1.0 - along) + SCALE[first + 1][band] * along).round() as u8)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::map::Check;
+    use crate::sky::steps::Steps;
+
+    /// Two maps of one texel: the dimmer one is dimmer in the picture too, for they share a scale.
+    #[test]
+    fn maps_of_a_picture_share_their_colours() {
+        let map = |energy| ExposureMap::of_parts(&Steps::default(), [1, 1], vec![energy], vec![0.0], Check::default());
+        let (dim, bright) = (map(1.0), map(100.0));
+        let panels = [&dim, &bright].map(|map| Panel { title: "a < b".to_owned(), map });
+        let picture = draw_many(&panels, 2, [40, 20]).unwrap();
+        let picture = image::load_from_memory(&picture.bytes).unwrap().to_rgb8();
+
+        let sheet = Sheet::new(2, 2, [40, 20]);
+        let middle = |number| {
+            let [left, top] = sheet.corner(number);
+            picture.get_pixel(left as u32 + 20, top as u32 + 10).0
+        };
+        assert_eq!(middle(1), colour(1.0));
+        assert_eq!(middle(0), colour(BELOW / (2.0 + BELOW)));
+    }
+}
