@@ -25,7 +25,7 @@ const STEP_MIN: f64 = 4.0;
 const CURVE_STEP_MIN: f64 = 60.0;
 
 /// Texels of the maps, one a pixel.
-const SIZE: [usize; 2] = [256, 128];
+const SIZE: [usize; 2] = [240, 120];
 
 /// Bands of elevation in the table, each of 15 degrees.
 const BANDS: usize = 6;
