@@ -4,6 +4,8 @@
 //!
 //! The same bytes on every run, but for the table of costs.
 
+mod map_trends;
+mod sky_pictures;
 mod sun_charts;
 mod sun_tables;
 
@@ -14,6 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("docs/sky"), PathBuf::from);
     std::fs::create_dir_all(&folder)?;
     sun_charts::draw(&folder)?;
+    sky_pictures::draw(&folder)?;
+    map_trends::draw(&folder)?;
     sun_tables::print()?;
     Ok(())
 }

@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn gauss_is_right_for_high_powers() {
         for power in [0, 2, 10, 39] {
-            let sum: f64 = gauss_legendre(RINGS).iter().map(|(place, weight)| weight * place.powi(power)).sum();
+            let sum: f64 = gauss_legendre(20).iter().map(|(place, weight)| weight * place.powi(power)).sum();
             let exact = if power % 2 == 0 { 2.0 / f64::from(power + 1) } else { 0.0 };
             assert!((sum - exact).abs() < 1e-12, "{power}: {sum}");
         }

@@ -3,6 +3,8 @@
 //! In arrays row 0 lies on the horizon; in pictures the zenith is at the top. Columns run clockwise from true north.
 
 #[cfg(feature = "cli")]
+mod frame;
+#[cfg(feature = "cli")]
 pub mod picture;
 
 use crate::sky::map::ExposureMap;
