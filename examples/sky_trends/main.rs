@@ -17,6 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     sun_charts::draw(&folder)?;
     sky_pictures::draw(&folder)?;
+    sky_pictures::print_levels();
     map_trends::draw(&folder)?;
     sun_tables::print()?;
     Ok(())

@@ -1,7 +1,9 @@
-//! Small pictures of the clear sky, by both models of its colour.
+//! Small pictures of the clear sky, by both models of its colour, and how bright each makes the ground.
 
+use glam::DVec3;
 use lightvein::export::{sky_picture, whole_file};
 use lightvein::sky::Sun;
+use lightvein::sky::colour::luminance;
 use lightvein::sky::picture::{Colours, Picture};
 use lightvein::sky::spectrum::Atmosphere;
 use std::io;
@@ -26,4 +28,22 @@ pub fn draw(folder: &Path) -> io::Result<()> {
         whole_file(&path, |out| sky_picture::write_png(out, &picture, sky_picture::EXPOSURE))?;
     }
     Ok(())
+}
+
+/// Prints the light on level ground, sun included, by model, turbidity and the sun's elevation.
+pub fn print_levels() {
+    println!("Light on level ground under a clear sky and its sun, klx:\n");
+    println!("| turbidity | sun at | Preetham | Hosek and Wilkie |");
+    println!("|---:|---:|---:|---:|");
+    for turbidity in [2.0, 3.0, 5.0] {
+        for elevation_deg in [0.0_f64, 5.0, 20.0, 60.0] {
+            let sun = Sun { azimuth_rad: 0.0, elevation_rad: elevation_deg.to_radians() };
+            let [preetham, hosek] = [Colours::Preetham, Colours::Hosek].map(|colours| {
+                let picture = Picture::paint(sun, 1.0, &Atmosphere::new(turbidity), colours, SIZE_PX);
+                luminance(picture.illuminance_klx(DVec3::Z))
+            });
+            println!("| {turbidity} | {elevation_deg}\u{b0} | {preetham:.1} | {hosek:.1} |");
+        }
+    }
+    println!();
 }
