@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use super::expose::ExposeArgs;
 use super::sky::args::SkyArgs;
 use crate::scene::Method;
 use crate::study::stress::Failure;
@@ -71,6 +72,8 @@ pub enum Command {
     Stress(StressArgs),
     /// The sun's path, a picture of the sky, and the exposure map of a period: what comes from each direction
     Sky(SkyArgs),
+    /// What the sensors receive from sun and sky over a period, by rays; without what surfaces reflect
+    Expose(ExposeArgs),
 }
 
 /// What `stress` takes.

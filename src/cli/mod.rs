@@ -5,6 +5,7 @@
 
 mod args;
 mod chart;
+mod expose;
 mod peer;
 mod plan;
 mod report;

@@ -2,6 +2,7 @@
 
 use super::args::{Args, Command, Common};
 use super::chart;
+use super::expose;
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::sky;
@@ -41,6 +42,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
         Command::Stress(args) => stress::run(&args, cancel),
         Command::Sky(args) => sky::run(&args, cancel),
+        Command::Expose(args) => expose::run(&args, cancel),
     }
 }
 

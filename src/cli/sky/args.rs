@@ -24,22 +24,10 @@ pub struct SkyArgs {
     #[arg(long, value_name = "DEG", value_parser = azimuth_deg, requires = "time", allow_negative_numbers = true)]
     pub facade: Option<f64>,
     #[command(flatten)]
-    pub place: PlaceArgs,
-    /// First day of the period, MM-DD
-    #[arg(long, value_name = "MM-DD", value_parser = day)]
-    pub start: Option<(u8, u8)>,
-    /// Last day of the period, MM-DD; before the first it is of the next year
-    #[arg(long, value_name = "MM-DD", value_parser = day)]
-    pub end: Option<(u8, u8)>,
-    /// Step, minutes
-    #[arg(long = "step", value_name = "MIN", value_parser = step_min)]
-    pub step_min: Option<f64>,
+    pub site: SiteArgs,
     /// Columns and rows of the exposure map
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "512x512")]
     pub size: [usize; 2],
-    /// How the sky's light is spread; by default perez with weather, hosek without
-    #[arg(long, value_parser = model())]
-    pub model: Option<SkyModel>,
     /// What a clear sky brings, without weather: ineichen by Linke's turbidity; spectral by the published transmittances
     #[arg(long, value_parser = clear_sky())]
     pub clear_sky: Option<ClearSky>,
@@ -75,9 +63,12 @@ pub enum PictureColours {
     Hosek,
 }
 
-/// Place and air; what is given goes before what the scene or the weather says.
+/// Place, air and period; what is given goes before what the scene or the weather says.
 #[derive(Debug, Clone, Default, clap::Args)]
-pub struct PlaceArgs {
+pub struct SiteArgs {
+    /// Weather file (.epw .wea)
+    #[arg(long, value_name = "FILE")]
+    pub weather: Option<PathBuf>,
     /// Latitude, degrees, north positive
     #[arg(long, value_name = "DEG", value_parser = |text: &str| within(text, -90.0, 90.0), allow_negative_numbers = true)]
     pub latitude: Option<f64>,
@@ -93,25 +84,45 @@ pub struct PlaceArgs {
     /// Reflectance of the ground round about, 0 to 1
     #[arg(long, value_parser = |text: &str| within(text, 0.0, 1.0))]
     pub albedo: Option<f64>,
+    /// First day of the period, MM-DD
+    #[arg(long, value_name = "MM-DD", value_parser = day)]
+    pub start: Option<(u8, u8)>,
+    /// Last day of the period, MM-DD; before the first it is of the next year
+    #[arg(long, value_name = "MM-DD", value_parser = day)]
+    pub end: Option<(u8, u8)>,
+    /// Step, minutes
+    #[arg(long = "step", value_name = "MIN", value_parser = step_min)]
+    pub step_min: Option<f64>,
+    /// How the sky's light is spread; by default perez with weather, hosek without
+    #[arg(long, value_parser = model())]
+    pub model: Option<SkyModel>,
+}
+
+impl SiteArgs {
+    /// A site with what was typed written over it.
+    pub fn over(&self, site: Site) -> Site {
+        Site {
+            latitude_deg: self.latitude.or(site.latitude_deg),
+            longitude_deg: self.longitude.or(site.longitude_deg),
+            utc_offset_h: self.utc_offset.or(site.utc_offset_h),
+            turbidity: self.turbidity.or(site.turbidity),
+            ground_albedo: self.albedo.or(site.ground_albedo),
+            weather: self.weather.clone().or(site.weather),
+            start: self.start.or(site.start),
+            end: self.end.or(site.end),
+            step_min: self.step_min.or(site.step_min),
+            ..site
+        }
+    }
 }
 
 impl SkyArgs {
     /// A site with what was typed written over it.
     pub fn over(&self, site: Site) -> Site {
-        let PlaceArgs { latitude, longitude, utc_offset, turbidity, albedo } = self.place;
+        let site = self.site.over(site);
         // A day of the calendar is a month and a day of one, whatever the year.
         let day = self.date.map(|date| (date.month().cast_unsigned(), date.day().cast_unsigned()));
-        Site {
-            latitude_deg: latitude.or(site.latitude_deg),
-            longitude_deg: longitude.or(site.longitude_deg),
-            utc_offset_h: utc_offset.or(site.utc_offset_h),
-            turbidity: turbidity.or(site.turbidity),
-            ground_albedo: albedo.or(site.ground_albedo),
-            start: day.or(self.start).or(site.start),
-            end: day.or(self.end).or(site.end),
-            step_min: self.step_min.or(site.step_min),
-            ..site
-        }
+        Site { start: day.or(site.start), end: day.or(site.end), ..site }
     }
 }
 

@@ -92,12 +92,13 @@ fn open(args: &SkyArgs, stages: &Stages, cancel: &Cancel) -> Result<(String, Out
         }
         Some(path) => bail!("{}: neither a scene file (.toml) nor weather (.epw, .wea)", path.display()),
     };
+    let site = args.over(site);
     let weather = site.weather.as_deref().map(|path| Weather::load(path, stages, cancel)).transpose()?;
     let name = if name.is_empty() { weather.as_ref().map_or(name, |weather| weather.name.clone()) } else { name };
     let warnings = weather.as_ref().map_or_else(Vec::new, |weather| weather.warnings.clone());
 
-    let mut outdoors = Outdoors::of(&args.over(site), weather).with_context(|| name.clone())?;
-    outdoors.model = args.model.unwrap_or(outdoors.model);
+    let mut outdoors = Outdoors::of(&site, weather).with_context(|| name.clone())?;
+    outdoors.model = args.site.model.unwrap_or(outdoors.model);
     if args.clear_sky.is_some() && outdoors.weather.is_some() {
         bail!("{name}: --clear-sky is for a sky without weather; here the weather says what sun and sky bring");
     }
