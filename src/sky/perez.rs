@@ -166,7 +166,10 @@ impl Perez {
         } else {
             (parameter(bin.c), parameter(bin.d))
         };
-        Self { a: parameter(bin.a), b: parameter(bin.b), c, d, e: parameter(bin.e), clearness, brightness }
+        // Above 0 the horizon would be e^(b / 0.01) times as bright as the zenith: no measured sky is, and light that no weather
+        // has (a strong beam from the horizon) must not end in a line there.
+        let b = parameter(bin.b).min(0.0);
+        Self { a: parameter(bin.a), b, c, d, e: parameter(bin.e), clearness, brightness }
     }
 
     /// The row of the table that clearness chooses, 0 (overcast) to 7 (clear).
