@@ -54,8 +54,8 @@ pub fn arcades() -> Result<Outdoor, String> {
             mesh,
             0.25,
             "ground_*: 80 on open ground; under_*: 90 on ground with something above; wall_*: 110; deck_*: 50 on balconies,\n\
-             galleries and the footbridge; soffit_*: 30 that look down; roof_*: 40. Drawn by a seeded generator, evenly by\n\
-             area, 1 cm off.",
+             galleries and the footbridge; soffit_*: 30 that look down; roof_*: 40 that look up above 10 m, some of them on high\n\
+             balconies. Drawn by a seeded generator, evenly by area, 1 cm off.",
             sensors,
         ),
         about: "A street with an arcade, balconies, porches, galleries, two bridges and a passage: no height field.",
