@@ -48,7 +48,7 @@ pub fn check_clear(scene: &Scene) -> Result<(), String> {
 }
 
 /// From a point to a triangle: to its plane where the foot lies inside, else to its nearest edge.
-fn distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+pub fn distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     let doubled = (b - a).cross(c - a);
     let edges = [(a, b), (b, c), (c, a)];
     if edges.iter().all(|(q, r)| (r - q).cross(p - q).dot(doubled) >= 0.0) {
@@ -62,7 +62,7 @@ fn distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
 }
 
 /// Every edge must be walked once in each direction.
-fn check_closed(mesh: &Mesh) -> Result<(), String> {
+pub fn check_closed(mesh: &Mesh) -> Result<(), String> {
     let mut walks = BTreeMap::new();
     for polygon in mesh.polygons() {
         for (i, &a) in polygon.iter().enumerate() {
@@ -79,9 +79,15 @@ fn check_closed(mesh: &Mesh) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether the mesh winds about a point: its solid angles sum to 4 pi inside and to 0 outside (van Oosterom and
-/// Strackee 1983). Normals that point the wrong way fail here too.
+/// Whether the mesh winds about a point of its void. Normals that point the wrong way fail here too.
 fn is_inside(mesh: &Mesh, p: DVec3) -> bool {
+    // Normals into the void make the winding negative.
+    (winding(mesh, p) + 1.0).abs() < 0.5
+}
+
+/// How often the mesh winds about a point: its solid angles over 4 pi (van Oosterom and Strackee 1983). 0 outside, and
+/// for a point in solids whose normals point out of them the number of those solids.
+pub fn winding(mesh: &Mesh, p: DVec3) -> f64 {
     let mut half_angle = 0.0;
     for corners in mesh.triangle_corners() {
         let [a, b, c] = corners.map(|corner| corner - p);
@@ -89,7 +95,5 @@ fn is_inside(mesh: &Mesh, p: DVec3) -> bool {
         let volume = a.dot(b.cross(c));
         half_angle += volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
     }
-    // Normals into the void make the winding negative.
-    let winding = half_angle / (2.0 * std::f64::consts::PI);
-    (winding + 1.0).abs() < 0.5
+    half_angle / (2.0 * std::f64::consts::PI)
 }

@@ -15,6 +15,7 @@
 //! | cave | curved, noisy walls |
 //! | tower | storeys, shafts, loops, a floating block, every kind of light |
 //! | held_out/ | the test set, on which nothing was tuned: slanted and curved walls, other proportions and reflectances |
+//! | outdoor/ | solids under the sky, and an office with a window, checked in their own way: `outdoor/open_air.rs` |
 
 mod boxes;
 mod cave;
@@ -22,6 +23,7 @@ mod check;
 mod gallery;
 mod held_out;
 mod isosurface;
+mod outdoor;
 mod prisms;
 mod rooms;
 mod scene;
@@ -45,6 +47,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         check::check_clear(scene)?;
         scene.write(&root.join(held_out::FOLDER))?;
         println!("{}/{}", held_out::FOLDER, scene.summary());
+    }
+    for scene in &outdoor::scenes()? {
+        outdoor::check(scene)?;
+        scene.write(&root.join(outdoor::FOLDER))?;
+        println!("{}/{}", outdoor::FOLDER, scene.summary());
     }
     Ok(())
 }

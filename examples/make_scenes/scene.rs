@@ -7,7 +7,7 @@ use std::{fs, io};
 use glam::{DQuat, DVec3};
 
 /// The command that made a file, told in its first line.
-const MADE_BY: &str = "# made by: cargo run --release --example make_scenes -- scenes\n";
+pub const MADE_BY: &str = "# made by: cargo run --release --example make_scenes -- scenes\n";
 
 /// Polygons over shared vertices, in metres, Z up; normals (right-hand rule) point into the void.
 #[derive(Default)]

@@ -5,6 +5,9 @@ mod bad_input;
 /// Scene files, meshes, sensors and references as they should be.
 mod scene_files;
 
+/// The scenes under the sky, and what Radiance says of them.
+mod outdoor_scenes;
+
 /// The path tracer against closed forms.
 mod physics;
 
