@@ -56,6 +56,7 @@ def main():
     parser.add_argument("--bounces", type=int, default=5)
     parser.add_argument("--mf", type=int, default=4, help="the sky's patches: 145 mf^2")
     parser.add_argument("--samples", type=int, default=20000, help="rays of the first bounce, a sensor")
+    parser.add_argument("--table", help="name of the exposure's table, if not exposure_<weather>.csv")
     parser.add_argument("--only", choices=["exposure", "svf"], help="one table alone")
     options = parser.parse_args()
     weather = Path(options.weather)
@@ -85,7 +86,7 @@ def main():
                 f" suns where they stand every hour, {options.samples} rays a sensor, {seconds:.0f} s for {len(rows)} sensors"
             )
             title = f"# {name}: kWh/m2 over the year of {weather.name}, the sky of another place taken as it is"
-            table = scene.path.parent / f"exposure_{weather.stem}.csv"
+            table = scene.path.parent / (options.table or f"exposure_{weather.stem}.csv")
             write(table, [title, *made, setup, "id,beam,sky,reflected,total", *rows])
             print(f"{path}: {table.name}, {len(rows)} sensors in {seconds:.0f} s", flush=True)
 
