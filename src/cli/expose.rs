@@ -29,6 +29,9 @@ pub struct ExposeArgs {
     pub scene: PathBuf,
     #[command(flatten)]
     pub site: SiteArgs,
+    /// Suns of the period that a sensor looks at; by default every one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub sun_rays: Option<u32>,
     /// Directions of the sky at a sensor
     #[arg(long, value_name = "N", default_value_t = Casting::default().sky_rays, value_parser = clap::value_parser!(u32).range(8..=1 << 24))]
     pub sky_rays: u32,
@@ -97,7 +100,11 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
     let steps = outdoors.steps_unless(cancel).with_context(|| scene.name.clone())?;
     let settings = MapSettings { model: outdoors.model, haze: outdoors.haze, ..MapSettings::default() };
     let map = ExposureMap::build(&steps, &settings, &stages, cancel)?;
-    let casting = Casting { sky_rays: args.sky_rays, seed: args.flags.seed.or(scene.model.seed).unwrap_or(0) };
+    let casting = Casting {
+        sun_rays: args.sun_rays,
+        sky_rays: args.sky_rays,
+        seed: args.flags.seed.or(scene.model.seed).unwrap_or(0),
+    };
     let rays = Rays::new(&scene);
     let found = cast(&rays, &scene.sensors, &map, outdoors.north_rad, casting, &stages, cancel)?;
     let seconds = begin.elapsed().as_secs_f64();

@@ -1,27 +1,29 @@
 //! How much do sun and sky bring to a sensor, by casting rays at every sun of the period and over the sky?
 //!
-//! The beam: a shadow ray to each sun, which stands where it is and not where a texel of the map has it. The sky: directions
-//! by the cosine to the normal, evenly spread (R2 sequence), each bringing the map's radiance where nothing is in its way;
-//! glazing weakens both. The directions fall into blocks that are turned against each other at random; how far the blocks
-//! differ is the standard error.
+//! The beam: a shadow ray to each sun, which stands where it is and not where a texel of the map has it; or to some suns, each
+//! of which stands for the same share of what all would bring if nothing were in their way ([beams](super::beams)). The
+//! sky: directions by the cosine to the normal, evenly spread (R2 sequence), each bringing the map's radiance where nothing
+//! is in its way; glazing weakens both. The directions are dealt out to blocks in turn; how far the blocks differ is the
+//! sky's standard error, twice too large or so, for together they are spread more evenly than each.
 //!
-//! Cost: a ray a sun and a ray a direction, so some 5 ms a sensor for a year of hours; sensors share nothing. Limits: a
-//! sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed or face
-//! outwards.
+//! Cost: a ray a sun and a ray a direction, some 0.3 us each and thread, so 3 ms a sensor for all suns of a year of hours.
+//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed
+//! or face outwards.
 
 use super::Exposure;
+use super::beams::{Beam, beam_at, in_order};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::Status;
 use crate::rays::Rays;
 use crate::scene::Sensor;
+use crate::sky::azimuth_elevation_rad;
 use crate::sky::map::ExposureMap;
-use crate::sky::{azimuth_elevation_rad, towards};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Blocks of directions that are turned against each other.
+/// Blocks that the directions are dealt out to.
 const BLOCKS: u32 = 8;
 
 /// Directions in which a sensor looks for the backs of surfaces.
@@ -29,20 +31,23 @@ const LOOKS: u32 = 32;
 
 /// Offsets of the sensors' sequences start here, apart from those of the estimators.
 const OFFSETS: u64 = 1 << 46;
+const BEAM_OFFSETS: u64 = 1 << 47;
 
 /// How a sensor is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Casting {
+    /// Suns that are looked at; `None` for every one.
+    pub sun_rays: Option<u32>,
     /// Directions of the sky; rounded up to whole blocks.
     pub sky_rays: u32,
-    /// Seed of the turns.
+    /// Seed of the sequences' offsets.
     pub seed: u64,
 }
 
 impl Default for Casting {
-    /// 4096 directions: the sky's part within some 0.3%.
+    /// The truth: every sun and 4096 directions, which leave the sky's part within some 0.3%.
     fn default() -> Self {
-        Self { sky_rays: 4096, seed: 0 }
+        Self { sun_rays: None, sky_rays: 4096, seed: 0 }
     }
 }
 
@@ -61,14 +66,7 @@ pub fn cast(
     cancel: &Cancel,
 ) -> Result<Vec<Exposure>, Cancelled> {
     progress.begin("rays", sensors.len() as u64);
-    let suns: Vec<(Vec3, f64, f64)> = map
-        .suns
-        .iter()
-        .map(|sun| {
-            let direction = towards(sun.sun.azimuth_rad + north_rad, sun.sun.elevation_rad).as_vec3();
-            (direction, sun.energy_kwh_m2, sun.hours)
-        })
-        .collect();
+    let suns = in_order(map, north_rad);
     let sky = Sky { map, north_rad };
     let exposures: Result<Vec<Exposure>, Cancelled> = sensors
         .par_iter()
@@ -103,55 +101,41 @@ impl Sky<'_> {
     }
 }
 
-fn at_sensor(
-    rays: &Rays,
-    sensor: &Sensor,
-    suns: &[(Vec3, f64, f64)],
-    sky: &Sky,
-    casting: Casting,
-    number: u64,
-) -> Exposure {
+fn at_sensor(rays: &Rays, sensor: &Sensor, suns: &[Beam], sky: &Sky, casting: Casting, number: u64) -> Exposure {
     let from_m = sensor.position_m + sensor.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
     if is_inside(rays, from_m) {
         return Exposure::none(Status::InSolid);
     }
     let mut exposure = Exposure::none(Status::Dark);
-    for &(direction, energy_kwh_m2, hours) in suns {
-        let cosine = sensor.normal.map_or(1.0, |normal| direction.dot(normal));
-        if cosine > 0.0 {
+    let turn = sequence::offset(casting.seed, BEAM_OFFSETS + number)[0];
+    let beam = beam_at(rays, from_m, sensor.normal, suns, casting.sun_rays, turn);
+    (exposure.beam_kwh_m2, exposure.sun_h) = (beam.energy_kwh_m2, beam.sun_h);
+
+    // One sequence over the sky, dealt out to the blocks in turn: what the sky brings, and how much of it is seen.
+    let each = casting.sky_rays.div_ceil(BLOCKS).max(1);
+    let offset = sequence::offset(casting.seed, OFFSETS + number);
+    let mut blocks = [[0.0; 2]; BLOCKS as usize];
+    for index in 0..each * BLOCKS {
+        let square = sequence::square(index, offset);
+        let direction = match sensor.normal {
+            Some(normal) => sequence::cosine_about(normal, square),
+            None => sequence::on_sphere([square[0] / 2.0, square[1]]),
+        };
+        if direction.z > 0.0 {
             let passes = f64::from(rays.from_afar(from_m, direction));
-            exposure.beam_kwh_m2 += energy_kwh_m2 * f64::from(cosine) * passes;
-            exposure.sun_h += if passes > 0.0 { hours } else { 0.0 };
+            let block = &mut blocks[(index % BLOCKS) as usize];
+            block[0] += passes * sky.radiance_kwh_m2_sr(direction.as_dvec3());
+            block[1] += passes;
         }
     }
-
-    // The mean of each block, of what the sky brings and of how much of it is seen.
-    let each = casting.sky_rays.div_ceil(BLOCKS).max(1);
-    let blocks: Vec<[f64; 2]> = (0..BLOCKS)
-        .map(|block| {
-            let offset = sequence::offset(casting.seed, OFFSETS + number * u64::from(BLOCKS) + u64::from(block));
-            let (mut energy, mut seen) = (0.0, 0.0);
-            for index in 0..each {
-                let square = sequence::square(index, offset);
-                let direction = match sensor.normal {
-                    Some(normal) => sequence::cosine_about(normal, square),
-                    None => sequence::on_sphere([square[0] / 2.0, square[1]]),
-                };
-                if direction.z > 0.0 {
-                    let passes = f64::from(rays.from_afar(from_m, direction));
-                    energy += passes * sky.radiance_kwh_m2_sr(direction.as_dvec3());
-                    seen += passes;
-                }
-            }
-            // By the density of the directions: cos / pi, or 1 / (2 pi) over the upper half.
-            let solid_angle = if sensor.normal.is_some() { PI } else { 2.0 * PI };
-            [solid_angle * energy / f64::from(each), seen / f64::from(each)]
-        })
-        .collect();
+    // By the density of the directions: cos / pi, or 1 / (2 pi) over the upper half.
+    let solid_angle = if sensor.normal.is_some() { PI } else { 2.0 * PI };
+    let blocks = blocks.map(|[energy, seen]| [solid_angle * energy / f64::from(each), seen / f64::from(each)]);
     let mean = |part: usize| blocks.iter().map(|block| block[part]).sum::<f64>() / f64::from(BLOCKS);
     (exposure.sky_kwh_m2, exposure.svf) = (mean(0), mean(1));
     let spread: f64 = blocks.iter().map(|block| (block[0] - exposure.sky_kwh_m2).powi(2)).sum();
-    exposure.error_kwh_m2 = (spread / f64::from(BLOCKS * (BLOCKS - 1))).sqrt();
+    let of_sky = (spread / f64::from(BLOCKS * (BLOCKS - 1))).sqrt();
+    exposure.error_kwh_m2 = of_sky.hypot(beam.error_kwh_m2);
     if exposure.total_kwh_m2() > 0.0 {
         exposure.status = Status::Ok;
     }

@@ -1,10 +1,12 @@
 //! What does a surface receive from sun and sky over a period?
 //!
 //! [`Exposure`] is the answer at a sensor: the beam of the sun, the light of the sky, how much of the sky is seen. [`cast`]
-//! finds it by rays, every sun and as many directions of the sky as are asked for: the truth that faster ways are held to.
+//! finds it by rays, to every sun or to some, and to as many directions of the sky as are asked for: with all of them the
+//! truth that faster ways are held to.
 //!
 //! Limits: what surfaces and the ground send back is not in it yet; `reflected` is 0.
 
+pub mod beams;
 pub mod cast;
 
 use crate::light::Status;
@@ -19,7 +21,7 @@ pub struct Exposure {
     pub sky_kwh_m2: f64,
     /// From surfaces, kWh/m2.
     pub reflected_kwh_m2: f64,
-    /// Standard error of the sky's part, kWh/m2.
+    /// Standard error of sun and sky together, kWh/m2.
     pub error_kwh_m2: f64,
     /// Sky view factor, 0 to 1: the visible part of the sky, by the cosine to the normal (open ground 1, a wall 0.5);
     /// without a normal by solid angle.

@@ -1,5 +1,6 @@
 //! Exposure by rays against closed forms: open ground, walls, wells, canyons, glazing, sensors in the ground.
 
+use super::program::{run, text};
 use lightvein::daylight::Exposure;
 use lightvein::daylight::cast::{Casting, cast};
 use lightvein::job::{Cancel, Quiet};
@@ -10,7 +11,10 @@ use lightvein::sky::dome::SkyModel;
 use lightvein::sky::map::{ExposureMap, MapSettings};
 use lightvein::sky::site::Outdoors;
 use lightvein::sky::steps::{Period, Steps};
+use lightvein::sky::weather::Weather;
+use std::collections::HashMap;
 use std::fmt::Write;
+use std::path::Path;
 
 /// A quad by its corners.
 type Quad = [[f64; 3]; 4];
@@ -44,7 +48,7 @@ fn map(model: SkyModel) -> ExposureMap {
 }
 
 fn exposures(scene: &Scene, map: &ExposureMap, north_rad: f64) -> Vec<Exposure> {
-    let casting = Casting { sky_rays: 16_384, seed: 1 };
+    let casting = Casting { sun_rays: None, sky_rays: 16_384, seed: 1 };
     cast(&Rays::new(scene), &scene.sensors, map, north_rad, casting, &Quiet, &Cancel::new()).unwrap()
 }
 
@@ -159,4 +163,102 @@ fn a_sensor_in_the_ground_is_told_from_one_in_the_dark() {
     let found = exposures(&scene(&ground, "", "over,0,0,0,0,0,1\n"), &map, 0.0);
     assert_eq!(found[0].status, Status::Ok);
     near(found[0].svf, 1.0, 1e-3, "on the ground");
+}
+
+/// RMS of differences over the mean of the truth.
+fn off(found: &[f64], truth: &[f64]) -> f64 {
+    let square = found.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / truth.len() as f64;
+    square.sqrt() / (truth.iter().sum::<f64>() / truth.len() as f64)
+}
+
+fn outdoor(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/outdoor/{name}/{name}.toml"));
+    Scene::load(&path, &Quiet, &Cancel::new()).unwrap()
+}
+
+/// Some suns and some of the sky against all suns and much of the sky, and against what they say of their own error.
+#[test]
+fn some_suns_stand_for_all() {
+    let map = map(SkyModel::Perez);
+    for (name, bound) in [("courtyard", 0.012), ("blocks", 0.012), ("arcades", 0.02)] {
+        let scene = outdoor(name);
+        let rays = Rays::new(&scene);
+        let total = |casting: Casting| -> (Vec<f64>, Vec<f64>) {
+            let found = cast(&rays, &scene.sensors, &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap();
+            found.iter().map(|exposure| (exposure.total_kwh_m2(), exposure.error_kwh_m2)).unzip()
+        };
+        let (truth, _) = total(Casting::default());
+        let (some, errors) = total(Casting { sun_rays: Some(256), sky_rays: 256, seed: 3 });
+        let error = off(&some, &truth);
+        println!("{name}: {:.3}% of the mean", 100.0 * error);
+        assert!(error < bound, "{name}: {error}");
+        let within = some
+            .iter()
+            .zip(&truth)
+            .zip(&errors)
+            .filter(|((some, truth), error)| (*some - *truth).abs() <= 3.0 * *error + 1.0);
+        assert!(within.count() * 100 >= 97 * truth.len(), "{name}: the error that it says is too small");
+    }
+}
+
+/// Beam and sky of a year in Chicago against Radiance: exact suns, patches of the sky (MF4), 20,000 rays or more.
+#[test]
+fn rays_agree_with_radiance() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/weather/chicago.epw");
+    if !path.exists() {
+        println!("skipped: {} is not here", path.display());
+        return;
+    }
+    let weather = Weather::load(&path, &Quiet, &Cancel::new()).unwrap();
+    let outdoors = Outdoors::of(&Site::default(), Some(weather)).unwrap();
+    let map = ExposureMap::build(&outdoors.steps().unwrap(), &MapSettings::default(), &Quiet, &Cancel::new()).unwrap();
+    for (name, bound) in [("courtyard", 0.01), ("blocks", 0.012), ("arcades", 0.012)] {
+        let scene = outdoor(name);
+        let table = std::fs::read_to_string(
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/outdoor/{name}/exposure_chicago.csv")),
+        );
+        let reference: HashMap<String, f64> = table
+            .unwrap()
+            .lines()
+            .filter(|line| !line.starts_with('#') && !line.starts_with("id,"))
+            .map(|line| {
+                let fields: Vec<&str> = line.split(',').collect();
+                (fields[0].to_owned(), fields[1].parse::<f64>().unwrap() + fields[2].parse::<f64>().unwrap())
+            })
+            .collect();
+        let casting = Casting::default();
+        let found = cast(&Rays::new(&scene), &scene.sensors, &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap();
+        let found: Vec<f64> = found.iter().map(Exposure::total_kwh_m2).collect();
+        let truth: Vec<f64> = scene.sensors.iter().map(|sensor| reference[&sensor.id]).collect();
+        let error = off(&found, &truth);
+        println!("{name}: {:.3}% of the mean", 100.0 * error);
+        assert!(error <= bound, "{name}: {error}");
+    }
+}
+
+#[test]
+fn expose_tells_each_sensor_and_writes_its_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let scene = "scenes/outdoor/courtyard/courtyard.toml";
+    let quick = ["--sun-rays", "64", "--sky-rays", "64", "--step", "120"];
+    let arguments = [&["expose", scene, "--json", "-o", out.to_str().unwrap()][..], &quick].concat();
+    let output = run(&arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let sensors = told["sensors"].as_array().unwrap();
+    assert_eq!(sensors.len(), 38);
+    for sensor in sensors {
+        for key in ["id", "beam", "sky", "reflected", "total", "svf", "status"] {
+            assert!(!sensor[key].is_null(), "{key}");
+        }
+    }
+    let table = std::fs::read_to_string(out.join("exposure.csv")).unwrap();
+    assert_eq!(table.lines().count(), 39);
+    assert!(table.starts_with("id,x_m,y_m,z_m,nx,ny,nz,beam_kwh_m2,"));
+
+    // Not without a place on earth.
+    let output = run(&["expose", "scenes/gallery/gallery.toml"]);
+    let stderr = text(&output.stderr);
+    assert!(output.status.code() == Some(1) && stderr.contains("latitude_deg is missing"), "{stderr}");
 }
