@@ -163,21 +163,23 @@ impl Skies {
 impl Row<'_> {
     /// The sum of all skies towards an azimuth, radians clockwise from true north.
     pub fn radiance(&self, azimuth_rad: f64) -> f64 {
-        let (sin_azimuth, cos_azimuth) = azimuth_rad.sin_cos();
-        let direction = [sin_azimuth * self.cos_elevation, cos_azimuth * self.cos_elevation, self.sin_elevation];
-        let direction = direction.map(|along| along as f32);
+        let direction = self.direction(azimuth_rad);
         if self.skies.has_glow { self.sum::<true>(direction) } else { self.sum::<false>(direction) }
     }
 
     /// Adds `share` of each sky towards an azimuth to that sky's own sum of [`Skies::no_sums`].
     pub fn add_each(&self, azimuth_rad: f64, share: f64, sums: &mut [[f64; LANES]]) {
-        let (sin_azimuth, cos_azimuth) = azimuth_rad.sin_cos();
-        let direction = [sin_azimuth * self.cos_elevation, cos_azimuth * self.cos_elevation, self.sin_elevation];
-        let direction = direction.map(|along| along as f32);
+        let direction = self.direction(azimuth_rad);
         for ((block, factor), sum) in self.skies.blocks.iter().zip(&self.factors).zip(sums) {
             let radiance = block.radiance::<true>(direction, factor);
             (0..LANES).for_each(|lane| sum[lane] += share * f64::from(radiance[lane]));
         }
+    }
+
+    fn direction(&self, azimuth_rad: f64) -> [f32; 3] {
+        let (sin_azimuth, cos_azimuth) = azimuth_rad.sin_cos();
+        let direction = [sin_azimuth * self.cos_elevation, cos_azimuth * self.cos_elevation, self.sin_elevation];
+        direction.map(|along| along as f32)
     }
 
     fn sum<const GLOW: bool>(&self, direction: [f32; 3]) -> f64 {
