@@ -113,6 +113,9 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
     if scene.sensors.is_empty() {
         warnings.push("the scene has no sensor".into());
     }
+    if args.flags.voxel.is_some() {
+        warnings.push("--voxel has no part in exposure by rays".into());
+    }
     warn(&warnings);
     outdoors.notes.iter().for_each(|note| tell(format_args!("note: {note}")));
     let rows: Vec<Row> = scene.sensors.iter().zip(&found).map(|(sensor, found)| Row::new(&sensor.id, found)).collect();

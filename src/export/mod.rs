@@ -14,6 +14,7 @@ pub mod ply;
 #[cfg(feature = "cli")]
 pub mod png;
 pub mod reference;
+mod scale;
 pub mod skeleton_json;
 pub mod sky_picture;
 pub mod stress;

@@ -1,6 +1,7 @@
 //! A picture to see at a glance what was found: the void from above, the skeleton coloured by irradiance, necks, lights,
 //! sensors. SVG, a legend with units in it. Storeys lie over each other.
 
+use super::scale::{self, INFERNO_ON_WHITE};
 use crate::light::Field;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -19,17 +20,6 @@ const LEGEND: f32 = 60.0;
 
 /// The void is drawn in at most this many cells across; finer ones only make the file larger.
 const MOST_CELLS: usize = 300;
-
-/// Dark to bright: points of the perceptually even scale "inferno" (van der Walt & Smith), for log irradiance.
-const SCALE: [[f32; 3]; 7] = [
-    [40.0, 11.0, 84.0],
-    [101.0, 21.0, 110.0],
-    [159.0, 42.0, 99.0],
-    [212.0, 72.0, 66.0],
-    [245.0, 125.0, 21.0],
-    [250.0, 193.0, 39.0],
-    [252.0, 230.0, 120.0],
-];
 
 /// Decades of irradiance that the colours span, from the brightest node down.
 const DECADES: f64 = 5.0;
@@ -213,10 +203,8 @@ fn draw_legend(out: &mut dyn Write, scene: &Scene, sheet: &Sheet, brightest: f64
 /// The colour of an irradiance, by its decades below the brightest.
 fn colour(value: f64, brightest: f64) -> String {
     let share = if value > 0.0 { 1.0 + (value / brightest).log10() / DECADES } else { 0.0 };
-    let along = share.clamp(0.0, 1.0) as f32 * (SCALE.len() - 1) as f32;
-    let [low, high] = [along.floor(), along.ceil()].map(|step| SCALE[step as usize]);
-    let mix = |channel: usize| low[channel] + (high[channel] - low[channel]) * along.fract();
-    format!("rgb({:.0},{:.0},{:.0})", mix(0), mix(1), mix(2))
+    let [red, green, blue] = scale::colour(&INFERNO_ON_WHITE, share);
+    format!("rgb({red},{green},{blue})")
 }
 
 /// A name as XML text.

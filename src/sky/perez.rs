@@ -6,7 +6,7 @@
 //! `a` to `e`, of one formula: how the sky changes towards the horizon, times how it brightens around the sun.
 //!
 //! The result is relative: whoever uses it scales it so that the sky gives the diffuse horizontal irradiance
-//! ([`Perez::horizontal`] is what to divide by). The sun's own disc is not in it.
+//! ([`skies`](super::dome::skies) does). The sun's own disc is not in it.
 //!
 //! With Radiance's sun, and scaled by its sum over patches, the mean sky of a year is that of its `gendaymtx` within 0.002%
 //! (RMS over the patches, `tests/it/weather.rs`).
@@ -17,7 +17,6 @@
 
 use super::clear::kasten_air_mass;
 use super::within;
-use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Irradiance of the sun outside the atmosphere at mean distance, W/m2, as the model was fitted with.
@@ -187,27 +186,6 @@ impl Perez {
         // Each by itself: two that are negative must not make light.
         gradation.max(0.0) * indicatrix.max(0.0)
     }
-
-    /// The integral of the relative radiance times the cosine to the zenith over the upper hemisphere, with the sun at a
-    /// direction (unit length): the horizontal irradiance in this sky's unit. 0 only for a sky that is black all over.
-    ///
-    /// Midpoints of 128 x 128 cells of equal weight on one side of the sun's meridian, within 1e-3; half a millisecond.
-    pub fn horizontal(&self, towards_sun: DVec3) -> f64 {
-        const RINGS: usize = 128;
-        const SECTORS: usize = 128;
-        let flat = towards_sun.x.hypot(towards_sun.y);
-        let mut sum = 0.0;
-        for ring in 0..RINGS {
-            // Equal steps of sin^2 are equal steps of the cosine-weighted solid angle.
-            let sin2 = (ring as f64 + 0.5) / RINGS as f64;
-            let (sin, cos) = (sin2.sqrt(), (1.0 - sin2).sqrt());
-            for sector in 0..SECTORS {
-                let from_sun = ((sector as f64 + 0.5) / SECTORS as f64 * PI).cos();
-                sum += self.relative(cos, cos * towards_sun.z + sin * flat * from_sun);
-            }
-        }
-        PI * sum / (RINGS * SECTORS) as f64
-    }
 }
 
 /// The number and the row of a clearness.
@@ -260,29 +238,6 @@ mod tests {
                     "{zenith} {dni} {dhi} {cos}"
                 );
             }
-        }
-    }
-
-    #[test]
-    fn the_integral_is_that_of_finer_cells() {
-        for (elevation, dni, dhi) in
-            [(0.02, 5.0, 20.0_f64), (0.4, 600.0, 80.0), (0.9, 900.0, 60.0), (0.7, 100.0, 250.0)]
-        {
-            let sky = Perez::new(FRAC_PI_2 - elevation, dni, dhi, 1.0);
-            let sun = super::super::towards(1.0, elevation);
-            let (rings, sectors) = (1000, 2000);
-            let mut fine = 0.0;
-            for ring in 0..rings {
-                let zenith = (ring as f64 + 0.5) / rings as f64 * FRAC_PI_2;
-                for sector in 0..sectors {
-                    let azimuth = (sector as f64 + 0.5) / sectors as f64 * 2.0 * PI;
-                    let direction = super::super::towards(azimuth, FRAC_PI_2 - zenith);
-                    fine += sky.relative(direction.z, direction.dot(sun)) * zenith.sin() * zenith.cos();
-                }
-            }
-            fine *= FRAC_PI_2 / rings as f64 * 2.0 * PI / sectors as f64;
-            let coarse = sky.horizontal(sun);
-            assert!((coarse / fine - 1.0).abs() < 1e-3, "{sky:?}: {coarse} {fine}");
         }
     }
 }

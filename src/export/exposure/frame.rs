@@ -1,7 +1,8 @@
 //! What stands about painted exposure maps: titles, axes and the legend of the colours, as SVG.
 
-use super::picture::{Panel, Range, colour};
+use super::picture::{Panel, Range};
 use crate::export::plan::escaped;
+use crate::export::scale::{INFERNO, colour};
 use std::fmt::{Arguments, Write};
 
 /// Room left of, above and below each map, and right of all for the legend.
@@ -121,7 +122,7 @@ fn legend(put: &mut dyn FnMut(Arguments), bar: usize, [top, bottom]: [usize; 2],
     let high = (bottom - top) as f32;
     let height = |part: f32| bottom as f32 - high * part;
     for step in 0..STEPS {
-        let [red, green, blue] = colour((step as f64 + 0.5) / STEPS as f64);
+        let [red, green, blue] = colour(&INFERNO, (step as f64 + 0.5) / STEPS as f64);
         put(format_args!(
             r#"<rect x="{bar}" y="{}" width="16" height="{}" fill="rgb({red},{green},{blue})"/>"#,
             height((step + 1) as f32 / STEPS as f32),

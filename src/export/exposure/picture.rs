@@ -3,21 +3,10 @@
 
 use super::frame::{Sheet, frame};
 use crate::export::png::{Picture, png};
+use crate::export::scale::{INFERNO, colour};
 use crate::sky::map::ExposureMap;
 use resvg::tiny_skia;
 use std::io;
-
-/// Points of the perceptually even scale "inferno" (van der Walt & Smith), dark to bright.
-const SCALE: [[f64; 3]; 8] = [
-    [8.0, 6.0, 30.0],
-    [59.0, 15.0, 112.0],
-    [112.0, 25.0, 110.0],
-    [164.0, 44.0, 96.0],
-    [212.0, 72.0, 66.0],
-    [245.0, 125.0, 21.0],
-    [250.0, 193.0, 39.0],
-    [252.0, 255.0, 164.0],
-];
 
 /// Decades that the colours span, at least and at most.
 const DECADES: [f64; 2] = [1.0, 7.0];
@@ -111,7 +100,7 @@ fn paint(
             let texels =
                 within.clone().flat_map(|row| covered(x, wide, columns).map(move |column| row * columns + column));
             let value = texels.map(|texel| radiance[texel]).fold(0.0, f64::max);
-            let [red, green, blue] = colour(range.place(value));
+            let [red, green, blue] = colour(&INFERNO, range.place(value));
             let at = (y + top) * sheet_width + x + left;
             if let (Some(pixel), Some(colour)) =
                 (pixels.pixels_mut().get_mut(at), tiny_skia::PremultipliedColorU8::from_rgba(red, green, blue, 255))
@@ -120,14 +109,6 @@ fn paint(
             }
         }
     }
-}
-
-/// The colour at a place of the scale, 0 to 1.
-pub(super) fn colour(part: f64) -> [u8; 3] {
-    let place = part * (SCALE.len() - 1) as f64;
-    let first = (place as usize).min(SCALE.len() - 2);
-    let along = place - first as f64;
-    std::array::from_fn(|band| (SCALE[first][band] * (1.0 - along) + SCALE[first + 1][band] * along).round() as u8)
 }
 
 #[cfg(test)]
@@ -150,7 +131,7 @@ mod tests {
             let [left, top] = sheet.corner(number);
             picture.get_pixel(left as u32 + 20, top as u32 + 10).0
         };
-        assert_eq!(middle(1), colour(1.0));
-        assert_eq!(middle(0), colour(BELOW / (2.0 + BELOW)));
+        assert_eq!(middle(1), colour(&INFERNO, 1.0));
+        assert_eq!(middle(0), colour(&INFERNO, BELOW / (2.0 + BELOW)));
     }
 }
