@@ -8,6 +8,7 @@
 //! the map of the year are timed apart.
 
 use lightvein::daylight::cast::{Casting, cast};
+use lightvein::daylight::points;
 use lightvein::job::{Cancel, Quiet};
 use lightvein::rays::Rays;
 use lightvein::scene::{Scene, Sensor};
@@ -43,7 +44,8 @@ fn main() {
         );
         let many: Vec<Sensor> = scene.sensors.iter().cycle().take(SENSORS).cloned().collect();
         let totals = |sensors: &[Sensor], casting| -> Vec<f64> {
-            let found = cast(&rays, sensors, &map, outdoors.north_rad, casting, &Quiet, &Cancel::new()).unwrap();
+            let found =
+                cast(&rays, &points(sensors), &map, outdoors.north_rad, casting, &Quiet, &Cancel::new()).unwrap();
             found.iter().map(|exposure| exposure.total_kwh_m2()).collect()
         };
         let truth = totals(&scene.sensors, Casting { sky_rays: 65_536, ..Casting::default() });

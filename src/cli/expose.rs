@@ -7,8 +7,8 @@ use super::stages::Stages;
 use super::table::Table;
 use super::tell;
 use super::write::Folder;
-use crate::daylight::Exposure;
 use crate::daylight::cast::{Casting, cast};
+use crate::daylight::{self, Exposure};
 use crate::export::exposures;
 use crate::job::Cancel;
 use crate::rays::Rays;
@@ -106,7 +106,7 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
         seed: args.flags.seed.or(scene.model.seed).unwrap_or(0),
     };
     let rays = Rays::new(&scene);
-    let found = cast(&rays, &scene.sensors, &map, outdoors.north_rad, casting, &stages, cancel)?;
+    let found = cast(&rays, &daylight::points(&scene.sensors), &map, outdoors.north_rad, casting, &stages, cancel)?;
     let seconds = begin.elapsed().as_secs_f64();
 
     let mut warnings = [scene.warnings.as_slice(), &steps.warnings].concat();

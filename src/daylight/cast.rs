@@ -10,13 +10,12 @@
 //! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed
 //! or face outwards.
 
-use super::Exposure;
 use super::beams::{Beam, beam_at, in_order};
+use super::{Exposure, Point};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::Status;
 use crate::rays::Rays;
-use crate::scene::Sensor;
 use crate::sky::azimuth_elevation_rad;
 use crate::sky::map::ExposureMap;
 use glam::{DVec3, Vec3};
@@ -51,29 +50,29 @@ impl Default for Casting {
     }
 }
 
-/// What each sensor receives of a map's sun and sky, in their order. `north_rad` is the direction of true north, clockwise
+/// What each point receives of a map's sun and sky, in their order. `north_rad` is the direction of true north, clockwise
 /// from the scene's +Y.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn cast(
     rays: &Rays,
-    sensors: &[Sensor],
+    points: &[Point],
     map: &ExposureMap,
     north_rad: f64,
     casting: Casting,
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<Exposure>, Cancelled> {
-    progress.begin("rays", sensors.len() as u64);
+    progress.begin("rays", points.len() as u64);
     let suns = in_order(map, north_rad);
     let sky = Sky { map, north_rad };
-    let exposures: Result<Vec<Exposure>, Cancelled> = sensors
+    let exposures: Result<Vec<Exposure>, Cancelled> = points
         .par_iter()
         .enumerate()
-        .map(|(number, sensor)| {
+        .map(|(number, point)| {
             cancel.check()?;
-            let exposure = at_sensor(rays, sensor, &suns, &sky, casting, number as u64);
+            let exposure = at_point(rays, point, &suns, &sky, casting, number as u64);
             progress.advance(1);
             Ok(exposure)
         })
@@ -101,14 +100,14 @@ impl Sky<'_> {
     }
 }
 
-fn at_sensor(rays: &Rays, sensor: &Sensor, suns: &[Beam], sky: &Sky, casting: Casting, number: u64) -> Exposure {
-    let from_m = sensor.position_m + sensor.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
+fn at_point(rays: &Rays, point: &Point, suns: &[Beam], sky: &Sky, casting: Casting, number: u64) -> Exposure {
+    let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
     if is_inside(rays, from_m) {
         return Exposure::none(Status::InSolid);
     }
     let mut exposure = Exposure::none(Status::Dark);
     let turn = sequence::offset(casting.seed, BEAM_OFFSETS + number)[0];
-    let beam = beam_at(rays, from_m, sensor.normal, suns, casting.sun_rays, turn);
+    let beam = beam_at(rays, from_m, point.normal, suns, casting.sun_rays, turn);
     (exposure.beam_kwh_m2, exposure.sun_h) = (beam.energy_kwh_m2, beam.sun_h);
 
     // One sequence over the sky, dealt out to the blocks in turn: what the sky brings, and how much of it is seen.
@@ -117,7 +116,7 @@ fn at_sensor(rays: &Rays, sensor: &Sensor, suns: &[Beam], sky: &Sky, casting: Ca
     let mut blocks = [[0.0; 2]; BLOCKS as usize];
     for index in 0..each * BLOCKS {
         let square = sequence::square(index, offset);
-        let direction = match sensor.normal {
+        let direction = match point.normal {
             Some(normal) => sequence::cosine_about(normal, square),
             None => sequence::on_sphere([square[0] / 2.0, square[1]]),
         };
@@ -129,7 +128,7 @@ fn at_sensor(rays: &Rays, sensor: &Sensor, suns: &[Beam], sky: &Sky, casting: Ca
         }
     }
     // By the density of the directions: cos / pi, or 1 / (2 pi) over the upper half.
-    let solid_angle = if sensor.normal.is_some() { PI } else { 2.0 * PI };
+    let solid_angle = if point.normal.is_some() { PI } else { 2.0 * PI };
     let blocks = blocks.map(|[energy, seen]| [solid_angle * energy / f64::from(each), seen / f64::from(each)]);
     let mean = |part: usize| blocks.iter().map(|block| block[part]).sum::<f64>() / f64::from(BLOCKS);
     (exposure.sky_kwh_m2, exposure.svf) = (mean(0), mean(1));

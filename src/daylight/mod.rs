@@ -10,8 +10,30 @@ pub mod beams;
 pub mod cast;
 
 use crate::light::Status;
+use crate::scene::Sensor;
+use glam::Vec3;
 
-/// What a sensor receives over a period. With a normal: on that side of a plane, weighted by the cosine; without one: from all
+/// Where exposure is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Where it is, on its surface, metres.
+    pub position_m: Vec3,
+    /// Unit normal of the side that is asked for; `None` for light from all around, unweighted.
+    pub normal: Option<Vec3>,
+}
+
+impl From<&Sensor> for Point {
+    fn from(sensor: &Sensor) -> Self {
+        Self { position_m: sensor.position_m, normal: sensor.normal }
+    }
+}
+
+/// The sensors of a scene as points, in their order.
+pub fn points(sensors: &[Sensor]) -> Vec<Point> {
+    sensors.iter().map(Point::from).collect()
+}
+
+/// What a point receives over a period. With a normal: on that side of a plane, weighted by the cosine; without one: from all
 /// around, unweighted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exposure {

@@ -1,8 +1,8 @@
 //! Exposure by rays against closed forms: open ground, walls, wells, canyons, glazing, sensors in the ground.
 
 use super::program::{run, text};
-use lightvein::daylight::Exposure;
 use lightvein::daylight::cast::{Casting, cast};
+use lightvein::daylight::{Exposure, points};
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::Status;
 use lightvein::rays::Rays;
@@ -49,7 +49,7 @@ fn map(model: SkyModel) -> ExposureMap {
 
 fn exposures(scene: &Scene, map: &ExposureMap, north_rad: f64) -> Vec<Exposure> {
     let casting = Casting { sun_rays: None, sky_rays: 16_384, seed: 1 };
-    cast(&Rays::new(scene), &scene.sensors, map, north_rad, casting, &Quiet, &Cancel::new()).unwrap()
+    cast(&Rays::new(scene), &points(&scene.sensors), map, north_rad, casting, &Quiet, &Cancel::new()).unwrap()
 }
 
 #[track_caller]
@@ -184,7 +184,7 @@ fn some_suns_stand_for_all() {
         let scene = outdoor(name);
         let rays = Rays::new(&scene);
         let total = |casting: Casting| -> (Vec<f64>, Vec<f64>) {
-            let found = cast(&rays, &scene.sensors, &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap();
+            let found = cast(&rays, &points(&scene.sensors), &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap();
             found.iter().map(|exposure| (exposure.total_kwh_m2(), exposure.error_kwh_m2)).unzip()
         };
         let (truth, _) = total(Casting::default());
@@ -227,7 +227,8 @@ fn rays_agree_with_radiance() {
             })
             .collect();
         let casting = Casting::default();
-        let found = cast(&Rays::new(&scene), &scene.sensors, &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap();
+        let found =
+            cast(&Rays::new(&scene), &points(&scene.sensors), &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap();
         let found: Vec<f64> = found.iter().map(Exposure::total_kwh_m2).collect();
         let truth: Vec<f64> = scene.sensors.iter().map(|sensor| reference[&sensor.id]).collect();
         let error = off(&found, &truth);
