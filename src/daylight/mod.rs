@@ -8,6 +8,7 @@
 
 pub mod beams;
 pub mod cast;
+pub mod scales;
 
 use crate::light::Status;
 use crate::scene::Sensor;
