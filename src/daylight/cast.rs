@@ -142,7 +142,7 @@ fn at_point(rays: &Rays, point: &Point, suns: &[Beam], sky: &Sky, casting: Casti
 }
 
 /// Whether most of what is seen from a point are backs of surfaces.
-fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
+pub(super) fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
     let looks =
         (0..LOOKS).filter_map(|look| rays.closest(from_m, sequence::spiral(look, LOOKS, [0.37, 0.71]), f32::INFINITY));
     let (backs, fronts) =

@@ -7,6 +7,7 @@
 //! Limits: what surfaces and the ground send back is not in it yet; `reflected` is 0.
 
 pub mod beams;
+pub mod camera;
 pub mod cast;
 
 use crate::light::Status;
