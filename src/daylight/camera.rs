@@ -10,6 +10,7 @@ use super::Point;
 use super::cast::is_inside;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::rays::Rays;
+use crate::scene::Mesh;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -38,6 +39,9 @@ const STRAIGHT: f64 = 1e-4;
 
 /// Room left about the scene in the default view, as a share of it.
 const MARGIN: f64 = 0.04;
+
+/// What reaches no higher than this share of a scene's height is its ground.
+const GROUND: f32 = 0.1;
 
 /// Where the default view stands, seen from the scene: south-south-west and well above, where the sun is in the north's
 /// afternoon.
@@ -124,20 +128,42 @@ impl Camera {
     /// As [`Camera::new`].
     pub fn around(low_m: Vec3, high_m: Vec3, fov_rad: f64, size: [usize; 2]) -> Result<Self, CameraError> {
         let [low_m, high_m] = [low_m, high_m].map(|corner| corner.as_dvec3());
-        let (middle_m, half_m) = ((low_m + high_m) / 2.0, ((high_m - low_m) / 2.0).max(DVec3::splat(NEAREST_M)));
+        let middle_m = (low_m + high_m) / 2.0;
+        let half_m = ((high_m - low_m) / 2.0).max(DVec3::splat(NEAREST_M));
         let back = VIEW.normalize();
         let aimed = Self::new((middle_m + half_m.length() * back).as_vec3(), middle_m.as_vec3(), fov_rad, size)?;
 
-        // As near as every corner of the box allows that is to be in the picture.
-        let tangents = aimed.tangents();
-        let needed_m = |corner: u8| {
+        // The pyramid of view holds each corner of the box where it is no farther aside than the tangent of its depth. Of
+        // the places from which it holds all of them this is the nearest.
+        let [right, up, forward] = [aimed.right, aimed.up, aimed.forward].map(Vec3::as_dvec3);
+        let corners = (0..8_u8).map(|corner| {
             let side = |axis: u8| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
-            let at_m = half_m * DVec3::new(side(0), side(1), side(2));
-            let across = [aimed.right, aimed.up].map(|axis| at_m.dot(axis.as_dvec3()).abs());
-            (across[0] / tangents[0]).max(across[1] / tangents[1]) - at_m.dot(aimed.forward.as_dvec3())
+            half_m * DVec3::new(side(0), side(1), side(2))
+        });
+        let fitted = |axis: DVec3, tangent: f64| {
+            let edge = |side: f64| corners.clone().map(|at_m| side * at_m.dot(axis) - tangent * at_m.dot(forward));
+            let [high, low] = [1.0, -1.0].map(|side| edge(side).fold(f64::NEG_INFINITY, f64::max));
+            ((high - low) / 2.0, (high + low) / (2.0 * tangent))
         };
-        let distance_m = (0..8).map(needed_m).fold(0.0, f64::max) * (1.0 + MARGIN);
-        Self::new((middle_m + distance_m * back).as_vec3(), middle_m.as_vec3(), fov_rad, size)
+        let [wide, high] = aimed.tangents();
+        let ((aside_m, across_m), (above_m, along_m)) = (fitted(right, wide), fitted(up, high));
+        let distance_m = across_m.max(along_m).max(half_m.length() * MARGIN) * (1.0 + MARGIN);
+        let to_m = middle_m + aside_m * right + above_m * up;
+        Self::new((to_m + distance_m * back).as_vec3(), to_m.as_vec3(), fov_rad, size)
+    }
+
+    /// The default view of a mesh: of what stands on its ground, and of the ground about that for as far as it is high; `None`
+    /// without faces.
+    pub fn of_mesh(mesh: &Mesh, fov_rad: f64, size: [usize; 2]) -> Option<Result<Self, CameraError>> {
+        let (low_m, high_m) = mesh.bounds_m()?;
+        let ground_m = low_m.z + GROUND * (high_m.z - low_m.z);
+        let standing = mesh.triangles.iter().flatten().filter_map(|&vertex| mesh.positions_m.get(vertex as usize));
+        let (near_m, far_m) = standing
+            .filter(|at_m| at_m.z >= ground_m)
+            .fold((high_m, low_m), |(near_m, far_m), &at_m| (near_m.min(at_m), far_m.max(at_m)));
+        let about_m = Vec3::splat(high_m.z - low_m.z);
+        let (near_m, far_m) = ((near_m - about_m).max(low_m), (far_m + about_m).min(high_m));
+        Some(Self::around(near_m, far_m, fov_rad, size))
     }
 
     /// Whether a picture can be taken from where it stands.
@@ -249,7 +275,7 @@ impl Buffers {
 mod tests {
     use super::*;
     use crate::job::Quiet;
-    use crate::scene::{Mesh, Scene};
+    use crate::scene::Scene;
 
     /// A ground at a height, 20 m a side, and a wall over it that stands at y = 5 m.
     fn ground_and_wall(z: f32) -> Scene {
@@ -336,8 +362,21 @@ mod tests {
             }
             assert!(least[0] >= 0.0 && least[1] >= 0.0 && most[0] <= 800.0 && most[1] <= 600.0, "{least:?} {most:?}");
             let filled = ((most[0] - least[0]) / 800.0).max((most[1] - least[1]) / 600.0);
-            assert!(filled > 0.75, "{filled}");
+            assert!(filled > 0.9, "{filled}");
+            for (axis, side) in [(0, 800.0), (1, 600.0)] {
+                assert!((least[axis] + most[axis] - side).abs() < 0.1 * side, "in the middle: {least:?} {most:?}");
+            }
         }
+    }
+
+    #[test]
+    fn a_wide_ground_does_not_make_what_stands_on_it_small() {
+        let mut mesh = ground_and_wall(0.0).mesh;
+        mesh.positions_m[..4].iter_mut().for_each(|ground_m| *ground_m *= 100.0);
+        let camera = Camera::of_mesh(&mesh, DEFAULT_FOV_RAD, DEFAULT_SIZE).unwrap().unwrap();
+        let [left, right] = [4, 5].map(|vertex| camera.seen_at(mesh.positions_m[vertex]).unwrap().0[0]);
+        assert!((300.0..800.0).contains(&(right - left)), "{left} {right}");
+        assert!(Camera::of_mesh(&Mesh::default(), DEFAULT_FOV_RAD, DEFAULT_SIZE).is_none());
     }
 
     #[test]

@@ -9,6 +9,10 @@
 pub mod beams;
 pub mod camera;
 pub mod cast;
+mod quantity;
+pub mod surface;
+
+pub use quantity::Quantity;
 
 use crate::light::Status;
 use crate::scene::Sensor;
