@@ -141,7 +141,7 @@ impl Camera {
             half_m * DVec3::new(side(0), side(1), side(2))
         });
         let fitted = |axis: DVec3, tangent: f64| {
-            let edge = |side: f64| corners.clone().map(|at_m| side * at_m.dot(axis) - tangent * at_m.dot(forward));
+            let edge = |side: f64| corners.clone().map(move |at_m| side * at_m.dot(axis) - tangent * at_m.dot(forward));
             let [high, low] = [1.0, -1.0].map(|side| edge(side).fold(f64::NEG_INFINITY, f64::max));
             ((high - low) / 2.0, (high + low) / (2.0 * tangent))
         };
