@@ -7,8 +7,8 @@
 //! sky's standard error, twice too large or so, for together they are spread more evenly than each.
 //!
 //! Cost: a ray a sun and a ray a direction, some 0.3 us each and thread, so 3 ms a sensor for all suns of a year of hours.
-//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed
-//! or face outwards.
+//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, or no sky and more backs
+//! than fronts, so meshes must be closed or face outwards.
 
 use super::beams::{Beam, beam_at, in_order};
 use super::{Exposure, Point};
@@ -101,7 +101,7 @@ impl Sky<'_> {
 }
 
 fn at_point(rays: &Rays, point: &Point, suns: &[Beam], sky: &Sky, casting: Casting, number: u64) -> Exposure {
-    let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
+    let from_m = rays.off_surface(point.position_m, point.normal);
     if is_inside(rays, from_m) {
         return Exposure::none(Status::InSolid);
     }
@@ -141,12 +141,22 @@ fn at_point(rays: &Rays, point: &Point, suns: &[Beam], sky: &Sky, casting: Casti
     exposure
 }
 
-/// Whether most of what is seen from a point are backs of surfaces.
+/// Whether a point is inside matter: most of what is seen from it are backs of surfaces; or, under the ground as a sheet, no
+/// sky is seen and more backs than fronts. Glazing before the sky counts as sky.
 fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
-    let looks =
-        (0..LOOKS).filter_map(|look| rays.closest(from_m, sequence::spiral(look, LOOKS, [0.37, 0.71]), f32::INFINITY));
-    let (backs, fronts) =
-        looks.fold((0, 0), |(backs, fronts), hit| if hit.front { (backs, fronts + 1) } else { (backs + 1, fronts) });
+    let (mut backs, mut fronts, mut sky) = (0, 0, 0);
+    for look in 0..LOOKS {
+        let direction = sequence::spiral(look, LOOKS, [0.37, 0.71]);
+        if direction.z > 0.0 && rays.from_afar(from_m, direction) > 0.0 {
+            sky += 1;
+            continue;
+        }
+        match rays.closest(from_m, direction, f32::INFINITY) {
+            Some(hit) if hit.front => fronts += 1,
+            Some(_) => backs += 1,
+            None => {}
+        }
+    }
     // A sheet over open ground shows its back to those who stand under it, and the sky beside it.
-    backs > fronts && backs * 2 > LOOKS
+    backs > fronts && (backs * 2 > LOOKS || sky == 0)
 }
