@@ -7,7 +7,13 @@
 //! Limits: what surfaces and the ground send back is not in it yet; `reflected` is 0.
 
 pub mod beams;
+pub mod camera;
 pub mod cast;
+mod quantity;
+pub mod scales;
+pub mod surface;
+
+pub use quantity::Quantity;
 
 use crate::light::Status;
 use crate::scene::Sensor;

@@ -7,7 +7,7 @@
 //!
 //! Coordinates are `f32`. One constant for each scene, [`Rays::epsilon_m`], says how far a point found by a ray may be
 //! off its surface; whoever starts a ray on a surface lifts it off by that much along the normal. Features thinner than
-//! this (0.1 mm in a scene of 10 m, 2 mm in a town, 5 mm in a city of 10 km) are not resolved. The build is serial and gives the same tree every time.
+//! this (0.1 mm in a scene of 10 m, 2 mm in a town, 1 cm in a city of 10 km) are not resolved. The build is serial and gives the same tree every time.
 
 mod body;
 mod lift;
@@ -75,6 +75,8 @@ pub struct Rays {
     /// Share of light that each body passes straight on.
     transmittances: Vec<f32>,
     epsilon_m: f32,
+    /// How far off a measured surface rays start.
+    leaving_m: f32,
 }
 
 impl std::fmt::Debug for Rays {
@@ -112,7 +114,8 @@ impl Rays {
             surfaces.push(surface);
             transmittances.push(transmittance);
         }
-        Self { tree, bodies, surfaces, transmittances, epsilon_m: lift::epsilon_m(largest_m) }
+        let (epsilon_m, leaving_m) = (lift::epsilon_m(largest_m), lift::leaving_m(largest_m));
+        Self { tree, bodies, surfaces, transmittances, epsilon_m, leaving_m }
     }
 
     /// The first surface, glazing too, from `origin_m` along the unit vector `direction` within `max_m` (which may be

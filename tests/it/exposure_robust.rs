@@ -255,7 +255,7 @@ fn a_city_of_ten_kilometres_is_the_town_it_is_made_of() {
     for at in ends {
         let sensors = ON_HOUSE.map(|(id, place, normal)| (id, (DVec3::from(place) + at).to_array(), normal));
         let scene = load(&faces, &sensors);
-        assert!(Rays::new(&scene).epsilon_m() < 0.006);
+        assert!(Rays::new(&scene).epsilon_m() < 0.011);
         for ((id, ..), (far, near)) in sensors.iter().zip(exposures(&scene, &map, 4096).iter().zip(&alone)) {
             println!(
                 "{id}: svf {:.4} {:.4}, {:.1} {:.1} kWh/m2",
@@ -265,8 +265,8 @@ fn a_city_of_ten_kilometres_is_the_town_it_is_made_of() {
                 near.total_kwh_m2()
             );
             assert_eq!(far.status, near.status, "{id}");
-            // Out there rays start 5 mm off the wall, a quarter of the way to the louvre.
-            let (of_svf, share) = if *id == "behind_louvre" { (0.03, 0.3) } else { (0.005, 0.01) };
+            // Out there rays start 2.5 mm off the wall, of the 2 cm to the louvre.
+            let (of_svf, share) = if *id == "behind_louvre" { (0.015, 0.12) } else { (0.005, 0.01) };
             assert!((far.svf - near.svf).abs() < of_svf, "{id}: {} {}", far.svf, near.svf);
             let off = (far.total_kwh_m2() - near.total_kwh_m2()).abs();
             assert!(off < share * near.total_kwh_m2() + 1.0, "{id}: {far:?} {near:?}");
