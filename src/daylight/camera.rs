@@ -30,8 +30,8 @@ const MOST_PX: usize = 10_000;
 /// Nearest that what is looked at may be, metres.
 const NEAREST_M: f64 = 1e-3;
 
-/// Farthest that a camera may stand, in lifts off surfaces ([`Rays::epsilon_m`], 1e-5 of the scene): 20 times the scene's
-/// largest coordinate. Beyond, rounding puts hits under the surfaces that they lie on.
+/// Farthest that a camera may stand, in lifts off surfaces ([`Rays::epsilon_m`]): 20 times the scene's largest coordinate, and
+/// at least 4 times that of a city. Beyond, rounding puts hits under the surfaces that they lie on.
 const FARTHEST_EPSILONS: f32 = 20.0 * 1e5;
 
 /// Sine of the angle to the vertical below which a camera looks straight up or down.

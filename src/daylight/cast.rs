@@ -7,8 +7,8 @@
 //! sky's standard error, twice too large or so, for together they are spread more evenly than each.
 //!
 //! Cost: a ray a sun and a ray a direction, some 0.3 us each and thread, so 3 ms a sensor for all suns of a year of hours.
-//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed
-//! or face outwards.
+//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, or no sky and more backs
+//! than fronts, so meshes must be closed or face outwards.
 
 use super::beams::{Beam, beam_at, in_order};
 use super::{Exposure, Point};
@@ -127,9 +127,9 @@ pub fn cast_at(
     exposures
 }
 
-/// Where the rays of a point begin, metres: lifted off its surface.
+/// Where the rays of a point begin, metres: just off its surface.
 pub(super) fn stands_at(rays: &Rays, point: &Point) -> Vec3 {
-    point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m()
+    rays.off_surface(point.position_m, point.normal)
 }
 
 /// The sky of a map, by directions of the scene.
@@ -207,11 +207,21 @@ pub(super) fn looks() -> impl Iterator<Item = Vec3> {
     (0..LOOKS).map(|look| sequence::spiral(look, LOOKS, [0.37, 0.71]))
 }
 
-/// Whether most of what is seen from a point are backs of surfaces.
+/// Whether a point is inside matter: most of what is seen from it are backs of surfaces; or, under the ground as a sheet, no
+/// sky is seen and more backs than fronts. Glazing before the sky counts as sky.
 pub(super) fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
-    let seen = looks().filter_map(|look| rays.closest(from_m, look, f32::INFINITY));
-    let (backs, fronts) =
-        seen.fold((0, 0), |(backs, fronts), hit| if hit.front { (backs, fronts + 1) } else { (backs + 1, fronts) });
+    let (mut backs, mut fronts, mut sky) = (0, 0, 0);
+    for look in looks() {
+        if look.z > 0.0 && rays.from_afar(from_m, look) > 0.0 {
+            sky += 1;
+            continue;
+        }
+        match rays.closest(from_m, look, f32::INFINITY) {
+            Some(hit) if hit.front => fronts += 1,
+            Some(_) => backs += 1,
+            None => {}
+        }
+    }
     // A sheet over open ground shows its back to those who stand under it, and the sky beside it.
-    backs > fronts && backs * 2 > LOOKS
+    backs > fronts && (backs * 2 > LOOKS || sky == 0)
 }

@@ -55,3 +55,12 @@ mod exposure;
 
 /// What surfaces receive of sun and sky.
 mod daylight;
+
+/// Exposure by latitude and turbidity, as physics and the paper have it.
+mod exposure_trends;
+
+/// Exposure of odd scenes and places: right, or refused with a reason.
+mod exposure_robust;
+
+/// Real cities against Radiance.
+mod cities;
