@@ -55,3 +55,9 @@ mod exposure;
 
 /// What surfaces receive of sun and sky.
 mod daylight;
+
+/// Exposure on faces, at vertices, and in pictures.
+mod views;
+
+/// Parts of a scene moved, scaled or hidden.
+mod dynamic;
