@@ -11,6 +11,7 @@ pub mod camera;
 pub mod cast;
 pub mod dynamic;
 mod quantity;
+pub mod scales;
 pub mod surface;
 
 pub use quantity::Quantity;
