@@ -9,7 +9,7 @@
 //! Limits: boxes stand for what is in them, so points that see past a part's corners are asked again for nothing; a change that
 //! reaches beyond the scene's largest coordinate changes the precision of all rays, and all is asked again.
 
-use super::beams::in_order;
+use super::beams::{Cone, Suns};
 use super::camera::Buffers;
 use super::cast::{Asked, Casting, cast_at, looks, sky_directions, stands_at};
 use super::{Exposure, Point};
@@ -24,8 +24,9 @@ use rayon::prelude::*;
 /// Boxes beyond which those of before are taken as one, and those of after as another.
 const MOST_BOXES: usize = 16;
 
-/// Room about boxes, in lifts off surfaces: rays may meet a triangle by a rounding beside it.
-const PAD_EPSILONS: f32 = 2.0;
+/// Room about boxes, in lifts off surfaces: rays may meet a triangle by a rounding beside it, and points that stand off a surface
+/// by twice the lift are put in their place by it.
+const PAD_EPSILONS: f32 = 4.0;
 
 /// Where something changed.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,13 +76,18 @@ impl Around {
         (farthest - from_m).dot(normal) > 0.0
     }
 
-    /// The cone in which it is seen from a point: its axis and the cosine of its half angle; all directions from inside the ball.
-    fn cone(&self, from_m: DVec3) -> (Vec3, f32) {
+    /// Whether a point is in it.
+    fn holds(&self, at_m: DVec3) -> bool {
+        at_m.cmpge(self.low_m).all() && at_m.cmple(self.high_m).all()
+    }
+
+    /// A cone that holds all directions in which it is seen from a point.
+    fn cone(&self, from_m: DVec3) -> Cone {
         let to_m = (self.low_m + self.high_m) / 2.0 - from_m;
         let sine = (self.high_m - self.low_m).length() / 2.0 / to_m.length();
         // The slack is far above the rounding of f32.
         let cosine = if sine < 1.0 { (1.0 - sine * sine).sqrt() - 1e-5 } else { -2.0 };
-        (to_m.normalize_or_zero().as_vec3(), cosine as f32)
+        Cone { axis: to_m.normalize_or_zero().as_vec3(), cosine: cosine as f32 }
     }
 }
 
@@ -202,7 +208,7 @@ pub fn update(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Updated, Cancelled> {
-    let suns: Vec<Vec3> = in_order(map, north_rad).iter().map(|sun| sun.towards).collect();
+    let suns = Suns::new(map, north_rad);
     let kept = same_points(asked, known);
     progress.begin("rays concerned", asked.points.len() as u64);
     let concerned: Result<Vec<Option<&Exposure>>, Cancelled> = (asked.points.par_iter().enumerate())
@@ -247,44 +253,44 @@ fn same_points(asked: Asked, known: Known) -> Vec<Option<usize>> {
 }
 
 impl Disturbance {
-    /// Whether a ray that a point sends meets a change.
+    /// Whether a ray that a point sends meets a change, or the point itself is at one: where its rays begin depends on what is
+    /// near.
     fn concerns(
         &self,
         from_m: Vec3,
         point: &Point,
         looks_around: bool,
-        suns: &[Vec3],
+        suns: &Suns,
         casting: Casting,
         number: u64,
     ) -> bool {
         let Some(boxes) = &self.boxes else { return true };
+        let from = from_m.as_dvec3();
+        if boxes.iter().any(|around| around.holds(from) || around.holds(point.position_m.as_dvec3())) {
+            return true;
+        }
         if looks_around && looks().any(|look| self.meets(from_m, look)) {
             return true;
         }
-        let before =
-            |around: &&Around| point.normal.is_none_or(|normal| around.is_before(from_m.as_dvec3(), normal.as_dvec3()));
-        let from = from_m.as_dvec3();
-        let cones: Vec<(&Around, Vec3, f32)> = (boxes.iter().filter(before))
-            .map(|around| {
-                let (axis, cosine) = around.cone(from);
-                (around, axis, cosine)
-            })
-            .collect();
-        let is_met = |direction: Vec3| {
-            cones.iter().any(|&(around, axis, cosine)| {
-                direction.dot(axis) >= cosine && around.is_met(from, direction.as_dvec3())
-            })
+        let before = |around: &&Around| point.normal.is_none_or(|normal| around.is_before(from, normal.as_dvec3()));
+        let seen: Vec<(&Around, Cone)> =
+            boxes.iter().filter(before).map(|around| (around, around.cone(from))).collect();
+
+        let in_front = |sun: Vec3| point.normal.is_none_or(|normal| sun.dot(normal) > 0.0);
+        let is_shaded = |&(around, cone): &(&Around, Cone)| {
+            suns.any_in(&cone, |sun| in_front(sun) && around.is_met(from, sun.as_dvec3()))
         };
-        if cones.is_empty() {
-            return false;
-        }
-        let in_front = |sun: &Vec3| point.normal.is_none_or(|normal| sun.dot(normal) > 0.0);
-        if suns.iter().any(|&sun| is_met(sun) && in_front(&sun)) {
+        if seen.iter().any(is_shaded) {
             return true;
         }
+
         // The sky is looked for above the horizon alone.
-        let highest_m = cones.iter().map(|(around, ..)| around.high_m.z).fold(f64::NEG_INFINITY, f64::max);
-        highest_m > from.z
+        let is_met = |direction: Vec3| {
+            seen.iter().any(|(around, cone)| {
+                direction.dot(cone.axis) >= cone.cosine && around.is_met(from, direction.as_dvec3())
+            })
+        };
+        seen.iter().any(|(around, _)| around.high_m.z > from.z)
             && sky_directions(point.normal, casting, number).any(|direction| direction.z > 0.0 && is_met(direction))
     }
 }

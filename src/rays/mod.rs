@@ -67,6 +67,7 @@ impl Hit {
 pub struct Rays {
     /// The scene as it was built, then what was moved.
     levels: Vec<Level>,
+    largest_m: f32,
     epsilon_m: f32,
 }
 
@@ -94,7 +95,7 @@ impl Rays {
         let largest_m =
             solids.iter().map(|solid| solid.body.largest_coordinate()).chain(sensors).fold(SMALLEST_SCENE_M, f32::max);
         let levels = vec![Level::new(&solids, PAD_SHARE * largest_m)];
-        Self { levels, epsilon_m: EPSILON_SHARE * largest_m }
+        Self { levels, largest_m, epsilon_m: EPSILON_SHARE * largest_m }
     }
 
     /// The rays of the scene, which are these, with some of its parts changed: as new ones would be, at a cost of what is changed
@@ -110,7 +111,7 @@ impl Rays {
                 moving.push(solid_of(scene, triangle, corners_m));
             }
         }
-        let largest_m = self.epsilon_m / EPSILON_SHARE;
+        let largest_m = self.largest_m;
         if moving.iter().any(|solid| solid.body.largest_coordinate() > largest_m) {
             return None;
         }
@@ -120,7 +121,7 @@ impl Rays {
             Surface::Light(_) => true,
         };
         let levels = vec![before.keeping(stays), Level::new(&moving, PAD_SHARE * largest_m)];
-        Some(Self { levels, epsilon_m: self.epsilon_m })
+        Some(Self { levels, largest_m, epsilon_m: self.epsilon_m })
     }
 
     /// How far to lift a point off its surface, along the normal, before a ray starts there, metres: 1e-5 of the scene's
