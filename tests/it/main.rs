@@ -69,3 +69,6 @@ mod views;
 
 /// Parts of a scene moved, scaled or hidden.
 mod dynamic;
+
+/// Exposure by maps, at one scale and at two.
+mod scales;
