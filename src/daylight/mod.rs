@@ -9,6 +9,7 @@
 pub mod beams;
 pub mod camera;
 pub mod cast;
+pub mod dynamic;
 mod quantity;
 pub mod scales;
 pub mod surface;

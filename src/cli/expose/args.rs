@@ -4,6 +4,7 @@ use crate::cli::args::Flags;
 use crate::cli::sky::args::SiteArgs;
 use crate::daylight::Quantity;
 use crate::daylight::camera::{DEFAULT_FOV_RAD, DEFAULT_SIZE};
+use crate::scene::parts::Edit;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -22,6 +23,8 @@ pub struct ExposeArgs {
     /// At faces: the longest side of a patch, metres; by default such that there are some 20,000
     #[arg(long, value_name = "M", value_parser = patch_m)]
     pub patch: Option<f32>,
+    #[command(flatten)]
+    pub edits: EditArgs,
     /// What the colours of pictures and meshes show
     #[arg(long, value_parser = quantity(), default_value = "total")]
     pub show: Quantity,
@@ -70,6 +73,39 @@ impl ViewArgs {
     pub(super) fn size_px(&self) -> [usize; 2] {
         self.size.unwrap_or(DEFAULT_SIZE)
     }
+}
+
+/// What is done to parts of the mesh after the first result; what depends on it is computed anew. A name with a trailing `*`
+/// means all parts whose names begin so.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct EditArgs {
+    /// Move a part of the mesh (an object, group, node or file), metres, and compute anew what depends on it; may be repeated
+    #[arg(long = "move", value_name = "NAME=DX,DY,DZ", value_parser = moving)]
+    pub moves: Vec<(String, Edit)>,
+    /// Scale a part about the middle of its base
+    #[arg(long = "scale", value_name = "NAME=F", value_parser = scaling)]
+    pub scales: Vec<(String, Edit)>,
+    /// Take a part away
+    #[arg(long = "hide", value_name = "NAME")]
+    pub hides: Vec<String>,
+}
+
+impl EditArgs {
+    /// All edits.
+    pub fn all(&self) -> Vec<(String, Edit)> {
+        let hides = self.hides.iter().map(|name| (name.clone(), Edit::Hide));
+        self.scales.iter().chain(&self.moves).cloned().chain(hides).collect()
+    }
+}
+
+fn moving(text: &str) -> Result<(String, Edit), String> {
+    let edit = text.rsplit_once('=').and_then(|(name, by_m)| Some((name.to_owned(), Edit::Move(vector(by_m)?))));
+    edit.ok_or_else(|| "a move is NAME=DX,DY,DZ: a part and three numbers, metres".to_owned())
+}
+
+fn scaling(text: &str) -> Result<(String, Edit), String> {
+    let edit = text.rsplit_once('=').and_then(|(name, by)| Some((name.to_owned(), Edit::Scale(by.parse().ok()?))));
+    edit.ok_or_else(|| "a scale is NAME=F: a part and a factor".to_owned())
 }
 
 /// Where exposure is asked for.

@@ -5,7 +5,8 @@ use crate::cli::tell;
 use crate::cli::write::Folder;
 use crate::daylight::camera::{Buffers, Camera};
 use crate::daylight::cast::{Asked, Casting};
-use crate::daylight::surface::{Corners, Patch, corners, default_patch_m, patches};
+use crate::daylight::dynamic::{Disturbance, seen_again};
+use crate::daylight::surface::{Corners, Patch, corners, default_patch_m, patches, patches_changed};
 use crate::daylight::{self, Exposure, Point};
 use crate::export::exposures::mesh::{Colours, write_corners, write_patches};
 use crate::export::exposures::view::{View, write_exr, write_npy};
@@ -13,6 +14,7 @@ use crate::export::exposures::{self, picture};
 use crate::job::{Cancel, Progress};
 use crate::rays::Rays;
 use crate::scene::Scene;
+use crate::scene::parts::Change;
 use anyhow::{Context, Result, bail};
 use std::io::Write;
 
@@ -32,6 +34,17 @@ pub enum Layout {
     Vertices(Corners),
     /// Pixels of a picture.
     Pixels(Buffers),
+}
+
+/// The scene after changes.
+#[derive(Debug)]
+pub struct Scenery {
+    /// What became of its parts.
+    pub changes: Vec<Change>,
+    /// What rays hit now.
+    pub rays: Rays,
+    /// Where that differs from before.
+    pub disturbance: Disturbance,
 }
 
 /// Points, and how they lie. The numbers tell each from the others, also where some of them are gone.
@@ -128,7 +141,7 @@ impl Places {
                 (Layout::Patches { patches, patch_m }, points)
             }
             (At::Vertices, None) => {
-                let corners = corners(&scene.mesh, cancel)?;
+                let corners = corners(&scene.mesh, &scene.parts, cancel)?;
                 let points = corners.points.clone();
                 (Layout::Vertices(corners), points)
             }
@@ -143,6 +156,31 @@ impl Places {
         let seen = (0..buffers.depth_m.len()).filter_map(|pixel| Some((pixel as u32, buffers.point(pixel)?)));
         let (numbers, points) = seen.unzip();
         Self { layout: Layout::Pixels(buffers), points, numbers }
+    }
+
+    /// The places after parts of the scene were changed: what lies on them goes with them, sensors stay, and a camera looks again
+    /// with rays that meet a change.
+    ///
+    /// # Errors
+    /// An interrupt.
+    pub fn changed(&self, scene: &Scene, scenery: &Scenery, progress: &dyn Progress, cancel: &Cancel) -> Result<Self> {
+        let Scenery { rays, disturbance, changes } = scenery;
+        let (layout, points, numbers) = match &self.layout {
+            Layout::Sensors => return Ok(self.clone()),
+            Layout::Pixels(buffers) => {
+                return Ok(Self::seen(seen_again(buffers, rays, disturbance, progress, cancel)?));
+            }
+            Layout::Patches { patches, patch_m } => {
+                let (left, patches) = patches_changed(patches, changes, &scene.change_of_triangles(changes));
+                let points = patches.iter().map(Patch::point).collect();
+                (Layout::Patches { patches, patch_m: *patch_m }, points, left)
+            }
+            Layout::Vertices(corners) => {
+                let (left, corners) = corners.changed(changes, &scene.change_of_triangles(changes));
+                (Layout::Vertices(corners.clone()), corners.points, left)
+            }
+        };
+        Ok(Self { layout, points, numbers })
     }
 
     /// The question to the rays.

@@ -25,7 +25,28 @@ pub struct Report<'a> {
     at: Option<&'static str>,
     #[serde(flatten)]
     found: Found<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    update: Option<Update<'a>>,
     warnings: &'a [String],
+}
+
+/// The result after edits.
+#[derive(Serialize)]
+pub struct Update<'a> {
+    /// What was done, as it was typed.
+    pub edits: Vec<String>,
+    /// How many parts it concerned, and how many triangles they have.
+    pub parts: usize,
+    pub triangles: usize,
+    /// How many points there are, and how many were asked again.
+    pub count: usize,
+    pub again: usize,
+    /// How long this took, and how long the first result, the map of the sky taken out.
+    pub seconds: f64,
+    pub full_seconds: f64,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: Found<'a>,
 }
 
 /// One row a sensor; of other places a summary.
@@ -163,6 +184,23 @@ impl<'a> Found<'a> {
     }
 }
 
+impl Update<'_> {
+    fn text(&self) -> String {
+        format!(
+            "\nafter {}: {} parts, {} triangles; {} of {} points asked again\n\
+             in {:.3} s, where all of it takes {:.3} s\n\n{}",
+            self.edits.join(", "),
+            self.parts,
+            self.triangles,
+            self.again,
+            self.count,
+            self.seconds,
+            self.full_seconds,
+            self.found.text()
+        )
+    }
+}
+
 impl Summary {
     fn text(&self) -> String {
         let mut table = Table::new(["", "mean", "min", "5%", "25%", "50%", "75%", "95%", "max"]);
@@ -192,6 +230,7 @@ impl<'a> Report<'a> {
         map: &ExposureMap,
         seconds: f64,
         found: Found<'a>,
+        update: Option<Update<'a>>,
         warnings: &'a [String],
     ) -> Self {
         Self {
@@ -203,15 +242,17 @@ impl<'a> Report<'a> {
             dhi: map.totals.dhi_kwh_m2,
             at: (at != At::Sensors).then(|| at.name()),
             found,
+            update,
             warnings,
         }
     }
 
     /// The report for a reader.
     pub fn text(&self) -> String {
+        let update = self.update.as_ref().map_or_else(String::new, Update::text);
         format!(
             "{}: kWh/m2 over the period; global horizontal {:.0}, direct normal {:.0}, diffuse horizontal {:.0}\n\
-             by rays in {:.2} s; what surfaces reflect is not in it\n\n{}",
+             by rays in {:.2} s; what surfaces reflect is not in it\n\n{}{update}",
             self.scene,
             self.ghi,
             self.dni,
