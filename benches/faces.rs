@@ -156,8 +156,7 @@ fn city(faces: usize) -> Mesh {
     let boxes = faces.saturating_sub(mesh.triangles.len()) as f32 / 10.0;
     for side in &sides {
         let cell_m = (area_m2 / boxes.max(1.0)).sqrt();
-        let [columns, rows] =
-            [side.across_m, side.up_m].map(|along| (along.length() / cell_m).round() as usize);
+        let [columns, rows] = [side.across_m, side.up_m].map(|along| (along.length() / cell_m).round() as usize);
         let relief_m = (RELIEF_SHARE * cell_m).min(RELIEF_M);
         for cell in 0..columns * rows {
             relief(&mut mesh, side, [columns, rows], cell, relief_m);
