@@ -290,7 +290,8 @@ mod tests {
     #[test]
     fn rings_reach_out_and_grow() {
         let size = [1024, 1024];
-        let levels = (0..5).map(|level| Level { size: size.map(|side| side >> level), ..Level::default() }).collect();
+        let mut levels = vec![Level::default(); 5];
+        levels.iter_mut().enumerate().for_each(|(at, level)| level.size = size.map(|side| side >> at));
         let zenith = Zenith { corner_m: Vec2::ZERO, texel_m: 0.25, highest_m: 0.0, levels };
         for (samples, reach_m) in [(1, 10.0), (8, 100.0), (64, 100.0), (4096, 100.0)] {
             let rings = Rings::new(&zenith, samples, reach_m, 0.5).rings;
