@@ -7,8 +7,8 @@
 //! sky's standard error, twice too large or so, for together they are spread more evenly than each.
 //!
 //! Cost: a ray a sun and a ray a direction, some 0.3 us each and thread, so 3 ms a sensor for all suns of a year of hours.
-//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed
-//! or face outwards.
+//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, or no sky and more backs
+//! than fronts, so meshes must be closed or face outwards.
 
 use super::beams::{Suns, beam_at};
 use super::{Exposure, Point};
@@ -127,9 +127,9 @@ pub fn cast_at(
     exposures
 }
 
-/// Where the rays of a point begin, metres: lifted off its surface.
+/// Where the rays of a point begin, metres: just off its surface.
 pub(super) fn stands_at(rays: &Rays, point: &Point) -> Vec3 {
-    point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m()
+    rays.off_surface(point.position_m, point.normal)
 }
 
 /// The sky of a map, by directions of the scene.
@@ -207,11 +207,37 @@ pub(super) fn looks() -> impl Iterator<Item = Vec3> {
     (0..LOOKS).map(|look| sequence::spiral(look, LOOKS, [0.37, 0.71]))
 }
 
-/// Whether most of what is seen from a point are backs of surfaces.
+/// What is seen in a direction by who asks whether he is inside matter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    /// The sky, or glazing before it.
+    Sky,
+    /// The front of a surface.
+    Front,
+    /// The back of one.
+    Back,
+    /// Nothing, below the horizon.
+    Nothing,
+}
+
+/// What is seen in a direction.
+pub(super) fn look(rays: &Rays, from_m: Vec3, direction: Vec3) -> Look {
+    if direction.z > 0.0 && rays.from_afar(from_m, direction) > 0.0 {
+        return Look::Sky;
+    }
+    match rays.closest(from_m, direction, f32::INFINITY) {
+        Some(hit) if hit.front => Look::Front,
+        Some(_) => Look::Back,
+        None => Look::Nothing,
+    }
+}
+
+/// Whether a point is inside matter: most of what is seen from it are backs of surfaces; or, under the ground as a sheet, no
+/// sky is seen and more backs than fronts. Glazing before the sky counts as sky.
 pub(super) fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
-    let seen = looks().filter_map(|look| rays.closest(from_m, look, f32::INFINITY));
-    let (backs, fronts) =
-        seen.fold((0, 0), |(backs, fronts), hit| if hit.front { (backs, fronts + 1) } else { (backs + 1, fronts) });
+    let mut counts = [0; 4];
+    looks().for_each(|direction| counts[look(rays, from_m, direction) as usize] += 1);
+    let [sky, fronts, backs, _] = counts;
     // A sheet over open ground shows its back to those who stand under it, and the sky beside it.
-    backs > fronts && backs * 2 > LOOKS
+    backs > fronts && (backs * 2 > LOOKS || sky == 0)
 }

@@ -84,7 +84,7 @@ fn both(edits: &[(String, Edit)], before: Asked, after: Asked) -> (usize, bool, 
     let (rays, disturbance) = changed(&SCENE, &RAYS, &changes);
     let full = |rays: &Rays, asked| cast_at(rays, asked, &MAP, 0.3, CASTING, &Quiet, &Cancel::new()).unwrap();
     let exposures = full(&RAYS, before);
-    let known = Known { asked: before, exposures: &exposures };
+    let known = Known { rays: &RAYS, asked: before, exposures: &exposures };
     let updated = update(&rays, after, known, &disturbance, &MAP, 0.3, CASTING, &Quiet, &Cancel::new()).unwrap();
     let fresh = Rays::new(&SCENE.changed(&changes));
     let is_as_fresh = fresh.epsilon_m() != rays.epsilon_m() || updated.exposures == full(&fresh, after);
@@ -172,7 +172,7 @@ fn what_grows_beyond_the_scene_is_asked_anew_and_a_raised_flag_stops() {
     cancel.cancel();
     let changes = SCENE.changes(&edits).unwrap();
     let (rays, disturbance) = changed(&SCENE, &RAYS, &changes);
-    let known = Known { asked, exposures: &[] };
+    let known = Known { rays: &RAYS, asked, exposures: &[] };
     assert_eq!(update(&rays, asked, known, &disturbance, &MAP, 0.0, CASTING, &Quiet, &cancel), Err(Cancelled));
     assert_eq!(corners(&SCENE.mesh, &SCENE.parts, &cancel), Err(Cancelled));
 }

@@ -61,3 +61,12 @@ mod views;
 
 /// Parts of a scene moved, scaled or hidden.
 mod dynamic;
+
+/// Exposure by latitude and turbidity, as physics and the paper have it.
+mod exposure_trends;
+
+/// Exposure of odd scenes and places: right, or refused with a reason.
+mod exposure_robust;
+
+/// Real cities against Radiance.
+mod cities;

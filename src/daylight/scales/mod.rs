@@ -7,6 +7,7 @@
 //! Where it differs from the paper: peeled depths with all their bands beside the opening angle; bands summed exactly and
 //! not sampled; weights by the cosine.
 
+pub mod pixels;
 pub mod sight;
 pub mod sums;
 pub mod zenith;
@@ -57,8 +58,8 @@ pub struct Seer {
 impl Seer {
     fn new(zenith: &Zenith, point: &Point) -> Self {
         let at = zenith.at(point.position_m.truncate());
-        let texel = zenith.texel(at.x.floor() as i32, at.y.floor() as i32);
-        let top_m = texel.map_or(zenith::NOTHING_M, |texel| zenith.top_m[texel]);
+        let texel = |level: &zenith::Level| Some(level.top_m[level.texel(at.x.floor() as i32, at.y.floor() as i32)?]);
+        let top_m = zenith.levels.first().and_then(texel).unwrap_or(zenith::NOTHING_M);
         // A roof's height changes within a texel.
         let covered = top_m > point.position_m.z + zenith.texel_m;
         Self { position_m: point.position_m, at, normal: point.normal, covered }
@@ -83,10 +84,10 @@ pub fn expose(
     /// Points between looks at the clock of the progress bar.
     const CHUNK: usize = 256;
     progress.begin("maps", points.len() as u64);
-    let farthest_m = zenith.texel_m * Vec2::new(zenith.size[0] as f32, zenith.size[1] as f32).length();
+    let farthest_m = zenith.farthest_m();
     let reach_m = scan.reach_m.unwrap_or(farthest_m).min(farthest_m);
     let rings: Vec<Rings> = (0..sums.turns)
-        .map(|turn| Rings::new(scan.samples, zenith.texel_m, reach_m, (turn as f32 + 0.5) / sums.turns as f32))
+        .map(|turn| Rings::new(zenith, scan.samples, reach_m, (turn as f32 + 0.5) / sums.turns as f32))
         .collect();
     let chunks: Result<Vec<Vec<Exposure>>, Cancelled> = points
         .par_chunks(CHUNK)
@@ -115,7 +116,7 @@ fn at_point(
     random: f32,
 ) -> Exposure {
     let seer = Seer::new(zenith, point);
-    let turn = turn_of(sums, point.normal, random);
+    let turn = turn_of(sums.directions, sums.turns, point.normal.unwrap_or(Vec3::Z), random);
     let turned = rings.get((random * rings.len() as f32) as usize).or(rings.first());
     let Some(rings) = turned else { return Exposure::none(Status::Dark) };
 
@@ -143,18 +144,16 @@ fn at_point(
     exposure
 }
 
-/// How a point is turned: a wall so that its plane lies between two directions, anything else at random.
-fn turn_of(sums: &SkySums, normal: Option<Vec3>, random: f32) -> usize {
-    let turns = sums.turns as f32;
-    let turn = match normal.filter(|normal| normal.z.abs() < WALL_NORMAL_Z) {
-        Some(normal) => {
-            let sector_rad = TAU / sums.directions as f32;
-            let edge_rad = normal.x.atan2(normal.y) + 0.5 * PI + 0.5 * sector_rad;
-            (edge_rad.rem_euclid(sector_rad) / sector_rad * turns).round()
-        }
-        None => (random * turns).floor(),
+/// How a point is turned: a wall so that its plane lies between two directions, anything else by a number from 0 to 1.
+fn turn_of(directions: usize, turns: usize, normal: Vec3, random: f32) -> usize {
+    let turn = if normal.z.abs() < WALL_NORMAL_Z {
+        let sector_rad = TAU / directions as f32;
+        let edge_rad = normal.x.atan2(normal.y) + 0.5 * PI + 0.5 * sector_rad;
+        (edge_rad.rem_euclid(sector_rad) / sector_rad * turns as f32).round()
+    } else {
+        (random * turns as f32).floor()
     };
-    turn as usize % sums.turns
+    turn as usize % turns
 }
 
 /// Between which slopes the sky lies before a plane, along a direction; `None` where it lies behind it.

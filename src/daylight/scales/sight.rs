@@ -12,7 +12,7 @@
 //! Limits: bands are told to 1/64 of the sine of their elevation where something floats; what is thinner than the distance of
 //! two samples may be missed.
 
-use super::zenith::{NOTHING_M, Span, Zenith};
+use super::zenith::{Level, NOTHING_M, Span, Zenith};
 use glam::{Vec2, Vec3};
 
 /// A slope steeper than this between two samples is a wall: 63 degrees, steeper than most roofs.
@@ -33,12 +33,15 @@ struct Ring {
     near_m: f32,
     middle_m: f32,
     far_m: f32,
+    /// The level of the map it is read from, whose texels are no wider.
+    level: usize,
 }
 
 impl Rings {
-    /// At most `samples` of them, out to `reach_m`, of texels of `texel_m`: one a texel near the point, then farther apart in
+    /// At most `samples` of them, out to `reach_m`: one a texel near the point, then farther apart in
     /// proportion to the distance. `turn`, 0 to 1, places each sample in its ring; 0.5 in the middle.
-    pub fn new(samples: usize, texel_m: f32, reach_m: f32, turn: f32) -> Self {
+    pub fn new(zenith: &Zenith, samples: usize, reach_m: f32, turn: f32) -> Self {
+        let texel_m = zenith.texel_m;
         let samples = samples.max(1);
         let reach_m = reach_m.max(texel_m);
         let edges = |growth: f32| {
@@ -57,9 +60,15 @@ impl Rings {
             near_m: edge[0],
             middle_m: edge[0] + turn.clamp(0.0, 1.0) * (edge[1] - edge[0]),
             far_m: edge[1],
+            level: zenith.level_of(edge[1] - edge[0]),
         };
         let inside = |ring: &Ring| ring.near_m < reach_m;
         Self { rings: edges.windows(2).map(ring).take_while(inside).collect() }
+    }
+
+    /// The level of the map and the distance of each sample, metres.
+    pub fn places(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        self.rings.iter().map(|ring| (ring.level, ring.middle_m))
     }
 
     /// How many samples there are.
@@ -107,14 +116,18 @@ pub fn bands(
     point: &super::Seer,
     along: Vec2,
     [from, to]: [f32; 2],
-    mut see: impl FnMut(Band),
+    see: impl FnMut(Band),
 ) {
     let seen = match overhangs {
         Overhangs::Peeled => peeled(zenith, rings, point, along),
         _ => heights(zenith, rings, overhangs, point, along),
     };
     let (low, high) = (sine_of_slope(seen.low.max(from).max(0.0)), sine_of_slope(seen.high.min(to)));
-    let mut open = !seen.covered;
+    each_open(!seen.covered, low, high, see);
+}
+
+/// Calls `see` with each band of the open elevations, which are told apart evenly by their sine, between two sines.
+pub fn each_open(mut open: u64, low: f32, high: f32, mut see: impl FnMut(Band)) {
     while open != 0 && low < high {
         let first = open.trailing_zeros();
         let count = (open >> first).trailing_ones();
@@ -135,20 +148,32 @@ struct Seen {
     covered: u64,
 }
 
-/// A sample that lies on the map and before the point's plane: the texel, its ring and how far its middle lies along.
+/// A sample that lies on the map: where, how far along and how far off its middle lies.
+struct Sample<'a> {
+    level: &'a Level,
+    texel: usize,
+    ring: Ring,
+    along_m: f32,
+    off_m: Vec2,
+}
+
+/// The samples along a direction, the nearest first.
 fn samples<'a>(
     zenith: &'a Zenith,
     rings: &'a Rings,
     point: &'a super::Seer,
     along: Vec2,
-) -> impl Iterator<Item = (usize, Ring, f32, Vec2)> + 'a {
+) -> impl Iterator<Item = Sample<'a>> + 'a {
     let step = along / zenith.texel_m;
     rings.rings.iter().filter_map(move |&ring| {
-        let at = (point.at + step * ring.middle_m).floor();
-        let texel = zenith.texel(at.x as i32, at.y as i32)?;
-        let off_m = (at + 0.5 - point.at) * zenith.texel_m;
+        let level = zenith.levels.get(ring.level)?;
+        let at = (point.at + step * ring.middle_m).floor().as_ivec2() >> ring.level as i32;
+        let texel = level.texel(at.x, at.y)?;
+        // A texel of a thin level is the one of the finest below and left of its middle.
+        let middle = (((at << ring.level as i32) + (1 << ring.level) - 1).as_vec2() + 0.5) - point.at;
+        let off_m = middle * zenith.texel_m;
         let along_m = off_m.dot(along);
-        (along_m > 0.25 * zenith.texel_m).then_some((texel, ring, along_m, off_m))
+        (along_m > 0.25 * zenith.texel_m).then_some(Sample { level, texel, ring, along_m, off_m })
     })
 }
 
@@ -159,12 +184,12 @@ fn heights(zenith: &Zenith, rings: &Rings, overhangs: Overhangs, point: &super::
     let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
     let (mut before_m, mut before_along_m) = (0.0_f32, 0.0_f32);
     let highest_m = zenith.highest_m - z_m;
-    for (texel, _, along_m, off_m) in samples(zenith, rings, point, along) {
+    for Sample { level, texel, along_m, off_m, .. } in samples(zenith, rings, point, along) {
         // Nothing that is left can rise above the horizon.
         if highest_m < low * along_m {
             break;
         }
-        let rise_m = zenith.top_m[texel] - z_m;
+        let rise_m = level.top_m[texel] - z_m;
         if !point.is_before(off_m, rise_m) {
             continue;
         }
@@ -193,20 +218,18 @@ fn peeled(zenith: &Zenith, rings: &Rings, point: &super::Seer, along: Vec2) -> S
     let (mut low, mut covered) = (f32::NEG_INFINITY, 0_u64);
     let (mut before_m, mut before_along_m) = (0.0_f32, 0.0_f32);
     let highest_m = zenith.highest_m - z_m;
-    for (texel, ring, along_m, off_m) in samples(zenith, rings, point, along) {
+    for Sample { level, texel, ring, along_m, off_m } in samples(zenith, rings, point, along) {
         if highest_m < low * ring.near_m {
             break;
         }
-        let rise_m = zenith.ground_m[texel] - z_m;
+        let (ground_m, spans) = level.column(texel);
+        let rise_m = ground_m - z_m;
         if point.is_before(off_m, rise_m) {
             low = low.max(slope(rise_m, along_m, before_m, before_along_m));
             (before_m, before_along_m) = (rise_m, along_m);
         }
-        for span in zenith.spans(texel) {
-            if span.bottom_m != NOTHING_M && point.is_before(off_m, span.top_m - z_m) {
-                covered |= cover(span, z_m, ring);
-            }
-        }
+        let before = spans.iter().filter(|span| point.is_before(off_m, span.top_m - z_m));
+        covered = before.fold(covered, |covered, span| covered | cover(span, z_m, ring));
     }
     Seen { low, high: f32::INFINITY, covered }
 }
@@ -218,10 +241,15 @@ fn cover(span: &Span, z_m: f32, ring: Ring) -> u64 {
         return 0;
     }
     let low = under_m / (if under_m > 0.0 { ring.far_m } else { ring.near_m });
-    let step = |slope: f32| ((sine_of_slope(slope).max(0.0) * STEPS as f32).round() as u32).min(STEPS);
-    let (first, end) = (step(low), step(over_m / ring.near_m));
+    between(sine_of_slope(low), sine_of_slope(over_m / ring.near_m))
+}
+
+/// The elevations between two sines.
+pub fn between(low: f32, high: f32) -> u64 {
+    // Rounds to the nearest.
+    let step = |sine: f32| ((sine.max(0.0) * STEPS as f32 + 0.5) as u32).min(STEPS);
     let below = |step: u32| if step >= STEPS { u64::MAX } else { (1 << step) - 1 };
-    below(end) & !below(first)
+    below(step(high)) & !below(step(low))
 }
 
 impl super::Seer {
@@ -237,8 +265,11 @@ mod tests {
 
     #[test]
     fn rings_reach_out_and_grow() {
+        let size = [1024, 1024];
+        let levels = (0..5).map(|level| Level { size: size.map(|side| side >> level), ..Level::default() }).collect();
+        let zenith = Zenith { corner_m: Vec2::ZERO, texel_m: 0.25, highest_m: 0.0, levels };
         for (samples, reach_m) in [(1, 10.0), (8, 100.0), (64, 100.0), (4096, 100.0)] {
-            let rings = Rings::new(samples, 0.25, reach_m, 0.5).rings;
+            let rings = Rings::new(&zenith, samples, reach_m, 0.5).rings;
             assert!(rings.len() <= samples && rings[0].near_m == 0.125);
             assert!(rings.last().unwrap().far_m >= reach_m * 0.999, "{samples}");
             for pair in rings.windows(2) {
@@ -246,12 +277,16 @@ mod tests {
                 let [a, b] = [pair[0], pair[1]].map(|ring| ring.far_m - ring.near_m);
                 assert!(b >= a * 0.999 && a >= 0.2499);
             }
+            assert!(rings.iter().all(|ring| {
+                let texel_m = 0.25 * (1 << ring.level) as f32;
+                texel_m <= 1.0001 * (ring.far_m - ring.near_m) || ring.level == 0
+            }));
         }
     }
 
     #[test]
     fn a_span_covers_the_elevations_between_its_sides() {
-        let ring = Ring { near_m: 1.0, middle_m: 1.0, far_m: 1.0 };
+        let ring = Ring { near_m: 1.0, middle_m: 1.0, far_m: 1.0, level: 0 };
         let cover = |bottom_m: f32, top_m: f32| cover(&Span { bottom_m, top_m }, 10.0, ring);
         // 30 degrees is half the sine, 90 all of it.
         let at = |degrees: f32| 10.0 + degrees.to_radians().tan();

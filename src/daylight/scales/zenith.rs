@@ -26,6 +26,9 @@ pub const MOST_TEXELS: usize = 8192;
 /// triangles.
 const SAME_SHARE: f32 = 1e-5;
 
+/// A level this small, of either side, has none above it: it stays near the processor anyway.
+const LEAST_TEXELS: usize = 64;
+
 /// Rows of a block that is drawn by one thread; every block looks at every triangle.
 const ROWS_A_BLOCK: usize = 128;
 
@@ -45,20 +48,32 @@ pub struct Zenith {
     pub corner_m: Vec2,
     /// Edge of a texel, metres.
     pub texel_m: f32,
-    /// Texels along x and y.
-    pub size: [usize; 2],
     /// The highest surface of all, metres.
     pub highest_m: f32,
+    /// The map, then every second texel of it each way, and so on: what is read far away is read from few places of memory.
+    pub levels: Vec<Level>,
+}
+
+/// The texels of one level.
+#[derive(Debug, Clone, Default)]
+pub struct Level {
+    /// Texels along x and y.
+    pub size: [usize; 2],
     /// The highest surface of each texel, row by row (x fastest), metres; [`NOTHING_M`] where there is none.
     pub top_m: Vec<f32>,
-    /// What floats: for each texel where its spans begin in [`Zenith::spans`], and the end of the last. Empty where only the
-    /// highest surfaces were asked for.
-    first: Vec<u32>,
-    /// Spans, those of a texel in a row, from above to below. A texel that has only one that reaches down without end has none
-    /// here.
+    /// What stands and floats over each texel, and one more; empty where only the highest surfaces were asked for.
+    columns: Vec<Column>,
+    /// Spans, those of a texel in a row, from above to below.
     spans: Vec<Span>,
-    /// The top of what stands on the ground of each texel: of its lowest span if that reaches down without end.
-    pub ground_m: Vec<f32>,
+}
+
+/// What stands over a texel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Column {
+    /// The top of what reaches down without end, metres; [`NOTHING_M`] where nothing does.
+    ground_m: f32,
+    /// Where its floating spans begin; they end where those of the next texel begin.
+    first: u32,
 }
 
 /// A surface over a texel.
@@ -85,16 +100,7 @@ impl Zenith {
         let texels = texels.clamp(8, MOST_TEXELS);
         let texel_m = (extent_m.max_element() / texels as f32).max(f32::MIN_POSITIVE.sqrt());
         let size = [extent_m.x, extent_m.y].map(|side_m| ((side_m / texel_m).ceil() as usize).clamp(1, texels));
-        let mut map = Self {
-            corner_m: low_m.truncate(),
-            texel_m,
-            size,
-            highest_m: high_m.z,
-            top_m: Vec::new(),
-            first: Vec::new(),
-            spans: Vec::new(),
-            ground_m: Vec::new(),
-        };
+        let mut map = Self { corner_m: low_m.truncate(), texel_m, highest_m: high_m.z, levels: Vec::new() };
 
         let is_opaque =
             |triangle: usize| scene.material(triangle).is_none_or(|material| Material::passes(material) <= 0.0);
@@ -111,16 +117,21 @@ impl Zenith {
                 Ok(Block::drawn(&triangles, size[0], rows, peeled, same_m))
             })
             .collect();
-        if peeled {
-            map.first.push(0);
-        }
+        let mut level = Level { size, ..Level::default() };
         for block in blocks? {
-            let before = map.spans.len() as u32;
-            map.top_m.extend(block.top_m);
-            map.ground_m.extend(block.ground_m);
-            map.first.extend(block.ends.iter().map(|end| before + end));
-            map.spans.extend(block.spans);
+            let before = level.spans.len() as u32;
+            level.top_m.extend(block.top_m);
+            level.columns.extend(block.columns.iter().map(|column| Column { first: before + column.first, ..*column }));
+            level.spans.extend(block.spans);
         }
+        if peeled {
+            level.columns.push(Column { ground_m: NOTHING_M, first: level.spans.len() as u32 });
+        }
+        while level.size.iter().any(|side| *side > LEAST_TEXELS) {
+            let next = level.thinned();
+            map.levels.push(std::mem::replace(&mut level, next));
+        }
+        map.levels.push(level);
         Ok(map)
     }
 
@@ -137,6 +148,30 @@ impl Zenith {
         (place_m - self.corner_m) / self.texel_m
     }
 
+    /// From one corner of the map to the other, metres.
+    pub fn farthest_m(&self) -> f32 {
+        self.levels.first().map_or(0.0, |level| self.texel_m * Vec2::from(level.size.map(|side| side as f32)).length())
+    }
+
+    /// The level whose texels are at most that wide, the finest if all are wider.
+    pub fn level_of(&self, width_m: f32) -> usize {
+        let doublings = (width_m / self.texel_m).log2().floor();
+        (doublings.max(0.0) as usize).min(self.levels.len() - 1)
+    }
+
+    /// Whether all surfaces are kept.
+    pub fn is_peeled(&self) -> bool {
+        self.levels.first().is_some_and(|level| !level.columns.is_empty())
+    }
+
+    /// How many texels have something that floats.
+    pub fn floating(&self) -> usize {
+        let columns = self.levels.first().map_or(&[][..], |level| &level.columns);
+        columns.windows(2).filter(|pair| pair[0].first < pair[1].first).count()
+    }
+}
+
+impl Level {
     /// The number of a texel; `None` beyond the map.
     pub fn texel(&self, column: i32, row: i32) -> Option<usize> {
         let inside = |at: i32, size: usize| at >= 0 && (at as usize) < size;
@@ -144,21 +179,38 @@ impl Zenith {
             .then(|| row as usize * self.size[0] + column as usize)
     }
 
-    /// Whether all surfaces are kept.
-    pub fn is_peeled(&self) -> bool {
-        !self.first.is_empty()
+    /// The top of what stands on the ground of a texel of a peeled map, metres, and the spans that float over it, from above to
+    /// below.
+    pub fn column(&self, texel: usize) -> (f32, &[Span]) {
+        match self.columns.get(texel..texel + 2) {
+            Some([this, next]) if this.first == next.first => (this.ground_m, &[]),
+            Some([this, next]) => {
+                (this.ground_m, self.spans.get(this.first as usize..next.first as usize).unwrap_or_default())
+            }
+            _ => (NOTHING_M, &[]),
+        }
     }
 
-    /// What floats over a texel, and what stands there if anything floats; from above to below. Empty over a plain height
-    /// field.
-    pub fn spans(&self, texel: usize) -> &[Span] {
-        let range = self.first.get(texel).zip(self.first.get(texel + 1));
-        range.and_then(|(&first, &end)| self.spans.get(first as usize..end as usize)).unwrap_or_default()
-    }
-
-    /// How many texels have something that floats.
-    pub fn floating(&self) -> usize {
-        self.first.windows(2).filter(|ends| ends[0] < ends[1]).count()
+    /// Every second texel each way, of each four the one nearest to their middle that lies above and right of it.
+    fn thinned(&self) -> Self {
+        let size = self.size.map(|side| side.div_ceil(2));
+        let mut thin = Self { size, ..Self::default() };
+        for row in 0..size[1] {
+            for column in 0..size[0] {
+                let [x, y] = [(2 * column + 1).min(self.size[0] - 1), (2 * row + 1).min(self.size[1] - 1)];
+                let texel = y * self.size[0] + x;
+                thin.top_m.push(self.top_m.get(texel).copied().unwrap_or(NOTHING_M));
+                if !self.columns.is_empty() {
+                    let (ground_m, spans) = self.column(texel);
+                    thin.columns.push(Column { ground_m, first: thin.spans.len() as u32 });
+                    thin.spans.extend_from_slice(spans);
+                }
+            }
+        }
+        if !self.columns.is_empty() {
+            thin.columns.push(Column { ground_m: NOTHING_M, first: thin.spans.len() as u32 });
+        }
+        thin
     }
 }
 
@@ -166,9 +218,7 @@ impl Zenith {
 #[derive(Default)]
 struct Block {
     top_m: Vec<f32>,
-    ground_m: Vec<f32>,
-    /// Where each texel's spans end.
-    ends: Vec<u32>,
+    columns: Vec<Column>,
     spans: Vec<Span>,
 }
 
@@ -193,7 +243,6 @@ impl Block {
                 }
             });
         }
-        block.ground_m = block.top_m.clone();
         if peeled {
             // From above; where a face that looks down lies on one that looks up, as two bodies touch, the matter goes on.
             surfaces.sort_unstable_by(|a, b| {
@@ -209,21 +258,14 @@ impl Block {
     fn join(&mut self, surfaces: &[Surface], same_m: f32) {
         let mut of_texel = surfaces.chunk_by(|a, b| a.texel == b.texel).peekable();
         for texel in 0..self.top_m.len() {
-            let Some(some) = of_texel.next_if(|some| some.first().is_some_and(|s| s.texel as usize == texel)) else {
-                self.ends.push(self.spans.len() as u32);
-                continue;
-            };
-            let before = self.spans.len();
-            self.spans.extend(joined(some, same_m));
-            match self.spans.get(before..) {
-                Some([one]) if one.bottom_m == NOTHING_M => {
-                    self.ground_m[texel] = one.top_m;
-                    self.spans.truncate(before);
-                }
-                Some([.., last]) if last.bottom_m == NOTHING_M => self.ground_m[texel] = last.top_m,
-                _ => self.ground_m[texel] = NOTHING_M,
+            let first = self.spans.len() as u32;
+            let mut ground_m = NOTHING_M;
+            if let Some(some) = of_texel.next_if(|some| some.first().is_some_and(|s| s.texel as usize == texel)) {
+                let joined = joined(some, same_m);
+                ground_m = joined.last().filter(|last| last.bottom_m == NOTHING_M).map_or(NOTHING_M, |last| last.top_m);
+                self.spans.extend(joined.into_iter().filter(|span| span.bottom_m != NOTHING_M));
             }
-            self.ends.push(self.spans.len() as u32);
+            self.columns.push(Column { ground_m, first });
         }
     }
 }
@@ -317,21 +359,21 @@ mod tests {
         level(&mut mesh, [12.0, 0.0, 16.0, 8.0], 5.0, true);
         level(&mut mesh, [12.0, 0.0, 16.0, 8.0], 0.0, false);
         let map = map(mesh, 16);
-        assert_eq!((map.size, map.texel_m), ([16, 8], 1.0));
-        let bridge = [Span { bottom_m: 2.5, top_m: 3.0 }, Span { bottom_m: NOTHING_M, top_m: 0.0 }];
+        let level = &map.levels[0];
+        assert_eq!((level.size, map.texel_m), ([16, 8], 1.0));
+        let bridge = [Span { bottom_m: 2.5, top_m: 3.0 }];
         for row in 0..8 {
             for column in 0..16 {
-                let texel = map.texel(column, row).unwrap();
+                let texel = level.texel(column, row).unwrap();
                 let (spans, ground_m, top_m) = match column {
                     4..8 => (&bridge[..], 0.0, 3.0),
                     12.. => (&[][..], 5.0, 5.0),
                     _ => (&[][..], 0.0, 0.0),
                 };
-                assert_eq!((map.spans(texel), map.ground_m[texel], map.top_m[texel]), (spans, ground_m, top_m));
+                assert_eq!((level.column(texel), level.top_m[texel]), ((ground_m, spans), top_m));
             }
         }
-        assert_eq!(map.texel(16, 0), None);
-        assert_eq!(map.texel(0, -1), None);
+        assert_eq!([level.texel(16, 0), level.texel(0, -1)], [None, None]);
     }
 
     #[test]
@@ -343,8 +385,7 @@ mod tests {
         }
         let map = map(mesh, 8);
         let spans = [Span { bottom_m: 4.0, top_m: 9.0 }, Span { bottom_m: 1.0, top_m: 1.0 }];
-        assert!((0..64).all(|texel| map.spans(texel) == spans), "{:?}", map.spans(9));
-        assert!(map.ground_m.iter().all(|ground_m| *ground_m == NOTHING_M));
+        assert!((0..64).all(|texel| map.levels[0].column(texel) == (NOTHING_M, &spans[..])));
         assert_eq!(map.floating(), 64);
     }
 
@@ -357,14 +398,35 @@ mod tests {
         let map = map(mesh, 10);
         for texel in 0..100 {
             let expected_m = 0.5 * ((texel % 10) as f32 + 0.5);
-            assert!((map.top_m[texel] - expected_m).abs() < 1e-5);
-            assert!(map.spans(texel).is_empty());
+            assert!((map.levels[0].top_m[texel] - expected_m).abs() < 1e-5);
+            assert!(map.levels[0].column(texel).1.is_empty());
         }
     }
 
     #[test]
     fn an_empty_scene_has_an_empty_texel() {
         let map = map(Mesh::default(), 100);
-        assert_eq!((map.size, &map.top_m[..]), ([1, 1], &[NOTHING_M][..]));
+        assert_eq!((map.levels[0].size, &map.levels[0].top_m[..]), ([1, 1], &[NOTHING_M][..]));
+    }
+
+    #[test]
+    fn a_thinner_level_has_texels_of_the_finer_one() {
+        let mut mesh = Mesh::default();
+        level(&mut mesh, [0.0, 0.0, 201.0, 130.0], 0.0, true);
+        level(&mut mesh, [50.0, 0.0, 90.0, 130.0], 3.0, true);
+        level(&mut mesh, [50.0, 0.0, 90.0, 130.0], 2.0, false);
+        let map = map(mesh, 201);
+        assert_eq!(map.levels.iter().map(|level| level.size).collect::<Vec<_>>(), [[201, 130], [101, 65], [51, 33]]);
+        for (number, level) in map.levels.iter().enumerate() {
+            for texel in 0..level.top_m.len() {
+                let x = ((texel % level.size[0]) << number) + ((1 << number) - 1);
+                let floats = (50..90).contains(&x.min(200));
+                assert_eq!(
+                    (level.column(texel).1.len(), level.top_m[texel]),
+                    (usize::from(floats), if floats { 3.0 } else { 0.0 })
+                );
+            }
+        }
+        assert_eq!([0.4, 1.0, 1.9, 2.0, 5.0, 1e9].map(|width_m| map.level_of(width_m)), [0, 0, 0, 1, 2, 2]);
     }
 }
