@@ -30,9 +30,9 @@ const MOST_PX: usize = 10_000;
 /// Nearest that what is looked at may be, metres.
 const NEAREST_M: f64 = 1e-3;
 
-/// Farthest that a camera may stand, in lifts off surfaces ([`Rays::epsilon_m`]): 20 times the scene's largest coordinate, and
-/// at least 4 times that of a city. Beyond, rounding puts hits under the surfaces that they lie on.
-const FARTHEST_EPSILONS: f32 = 20.0 * 1e5;
+/// Farthest that a camera may stand, in lifts off surfaces ([`Rays::epsilon_m`]): 40 times a small scene's largest coordinate.
+/// Beyond, rounding puts hits farther under their surfaces than the lift.
+const FARTHEST_EPSILONS: f32 = 4e6;
 
 /// Sine of the angle to the vertical below which a camera looks straight up or down.
 const STRAIGHT: f64 = 1e-4;
@@ -408,7 +408,7 @@ mod tests {
         let rays = Rays::new(&ground_and_wall(0.0));
         let far = Camera::new(Vec3::Z * 1e4, here, 0.5, [8, 8]).unwrap();
         assert!(
-            far.check(&rays).unwrap_err().to_string().contains("10000 m from the middle of the scene; beyond 200 m")
+            far.check(&rays).unwrap_err().to_string().contains("10000 m from the middle of the scene; beyond 400 m")
         );
         assert_eq!(Camera::new(Vec3::Z * 9.0, here, 0.5, [8, 8]).unwrap().check(&rays), Ok(()));
     }

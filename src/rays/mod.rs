@@ -7,8 +7,8 @@
 //!
 //! Coordinates are `f32`. One constant for each scene, [`Rays::epsilon_m`], says how far a point found by a ray may be
 //! off its surface; whoever starts a ray on a surface lifts it off by that much along the normal. Features thinner than
-//! this (0.1 mm in a scene of 10 m, 2 mm in a town, 1 cm in a city of 10 km) are not resolved. The build is serial and gives the
-//! same tree every time.
+//! this (0.1 mm in a scene of 10 m, 2 mm in a town, 1 cm in a city of 10 km) are not resolved. The build is serial and gives
+//! the same tree every time.
 //!
 //! Where parts of the mesh are moved, scaled or hidden ([`Rays::changed`]), their bodies are blanked in the tree, which stays as
 //! it is, and what became of them stands in a small tree of its own: a ray goes through both, and the time is that of what moves.
@@ -95,8 +95,7 @@ impl Rays {
         let largest_m =
             solids.iter().map(|solid| solid.body.largest_coordinate()).chain(sensors).fold(SMALLEST_SCENE_M, f32::max);
         let levels = vec![Level::new(&solids, PAD_SHARE * largest_m)];
-        let (epsilon_m, leaving_m) = (lift::epsilon_m(largest_m), lift::leaving_m(largest_m));
-        Self { levels, largest_m, epsilon_m, leaving_m }
+        Self { levels, largest_m, epsilon_m: lift::epsilon_m(largest_m), leaving_m: lift::leaving_m(largest_m) }
     }
 
     /// The rays of the scene, which are these, with some of its parts changed: as new ones would be, at a cost of what is changed

@@ -56,12 +56,6 @@ mod exposure;
 /// What surfaces receive of sun and sky.
 mod daylight;
 
-/// Exposure on faces, at vertices, and in pictures.
-mod views;
-
-/// Parts of a scene moved, scaled or hidden.
-mod dynamic;
-
 /// Exposure by latitude and turbidity, as physics and the paper have it.
 mod exposure_trends;
 
@@ -70,3 +64,9 @@ mod exposure_robust;
 
 /// Real cities against Radiance.
 mod cities;
+
+/// Exposure on faces, at vertices, and in pictures.
+mod views;
+
+/// Parts of a scene moved, scaled or hidden.
+mod dynamic;

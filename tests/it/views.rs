@@ -164,7 +164,7 @@ fn impossible_views_are_refused_with_their_bound() {
     refuses(&["--from", "1,2"], 2, "X,Y,Z");
     refuses(&["--from", "1,2,3"], 2, "--to");
     refuses(&["--from", "10,0,5", "--to", "0,0,5"], 1, "the camera stands inside matter");
-    refuses(&["--from", "1e6,0,5", "--to", "0,0,5"], 1, "from the middle of the scene; beyond 2000 m");
+    refuses(&["--from", "1e6,0,5", "--to", "0,0,5"], 1, "from the middle of the scene; beyond 4000 m");
     refuses(&["--at", "faces", "--fov", "40"], 1, "are for --at camera, not for --at faces");
     refuses(&["--at", "camera", "--patch", "4"], 1, "--patch is for --at faces, not for --at camera");
     refuses(&["--at", "faces", "--patch", "1e-4"], 1, "patches of 0.0001 m are more than 10000000; patches of");
