@@ -30,10 +30,17 @@ pub struct ExposeArgs {
     pub show: Quantity,
     #[command(flatten)]
     pub site: SiteArgs,
-    /// Suns of the period that a point looks at, or `all`; by default all at sensors, 64 at faces and vertices, 16 a pixel
+    /// How exposure is found; by default the cheapest way inside --tolerance. `rays` takes the numbers below
+    #[arg(long, value_enum)]
+    pub method: Option<WayName>,
+    /// Factor within which exposure is to be right: RMSE as a share of the mean, above 1; by default what the scene says, else
+    /// 1.02 at sensors and 1.1 elsewhere
+    #[arg(long, value_name = "F", value_parser = crate::cli::args::factor, conflicts_with_all = ["method", "sun_rays", "sky_rays"])]
+    pub tolerance: Option<f64>,
+    /// Suns of the period that a point looks at, or `all`: by rays; all at sensors, 64 at faces and vertices, 16 a pixel
     #[arg(long, value_name = "N", value_parser = sun_rays)]
     pub sun_rays: Option<SunRays>,
-    /// Directions of the sky at a point; by default 4096 at sensors, 128 at faces and vertices, 32 a pixel
+    /// Directions of the sky at a point: by rays; 4096 at sensors, 128 at faces and vertices, 32 a pixel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=1 << 24))]
     pub sky_rays: Option<u32>,
     #[command(flatten)]
@@ -131,6 +138,17 @@ impl At {
             Self::Camera => "camera",
         }
     }
+}
+
+/// How exposure is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum WayName {
+    /// An open plane's exposure times the share of its sky that is seen.
+    Isotropic,
+    /// Maps of heights and of the sky; at the pixels of a camera also its own buffers.
+    Maps,
+    /// Rays to the suns and the sky.
+    Rays,
 }
 
 /// How many suns; `None` for all.

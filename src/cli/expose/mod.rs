@@ -1,4 +1,4 @@
-//! The command `expose`: what a scene receives from sun and sky over a period, by rays: at its sensors, on its faces, at its
+//! The command `expose`: what a scene receives from sun and sky over a period: at its sensors, on its faces, at its
 //! vertices, or wherever a camera looks.
 
 pub mod args;
@@ -10,7 +10,9 @@ use super::run::{say, start_threads, warn};
 use super::stages::Stages;
 use super::tell;
 use super::write::Folder;
-use crate::daylight::cast::cast_at;
+use crate::daylight::cast::Casting;
+use crate::daylight::choose::{Chosen, choose};
+use crate::daylight::way::{Ground, Way};
 use crate::export::exposures::mesh::Colours;
 use crate::export::exposures::span;
 use crate::job::Cancel;
@@ -47,15 +49,26 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
     let steps = outdoors.steps_unless(cancel).with_context(|| scene.name.clone())?;
     let settings = MapSettings { model: outdoors.model, haze: outdoors.haze, ..MapSettings::default() };
     let map = ExposureMap::build(&steps, &settings, &stages, cancel)?;
-    let casting = places::casting(args, at, args.flags.seed.or(scene.model.seed).unwrap_or(0));
+    let seed = args.flags.seed.or(scene.model.seed).unwrap_or(0);
+    let way = places::way(args, at, seed)?;
     let begin_rays = Instant::now();
     let rays = Rays::new(&scene);
     let places = Places::of(args, at, camera.as_ref(), &scene, &rays, &stages, cancel)?;
     let north_rad = outdoors.north_rad;
-    let exposures = cast_at(&rays, places.asked(), &map, north_rad, casting, &stages, cancel)?;
+    let ground = Ground { scene: &scene, rays: &rays, map: &map, north_rad, seed };
+    let (asked, buffers) = (places.asked(), places.buffers());
+    let chosen = match way {
+        Some(way) => Chosen { way: way.prepare(&ground, cancel)?, tried: Vec::new() },
+        None => {
+            let tolerance = places::tolerance(args, at, &scene);
+            choose(&ground, asked, buffers, &places::ways(at, seed), tolerance, &stages, cancel)?
+        }
+    };
+    let exposures = chosen.way.ask(&ground, asked, buffers, &stages, cancel)?;
     let [seconds, full_seconds] = [begin, begin_rays].map(|begin| begin.elapsed().as_secs_f64());
 
     let mut warnings = [scene.warnings.as_slice(), &steps.warnings, &odd(&scene, &changes)].concat();
+    let casting = if let Way::Rays(casting) = chosen.way.way { casting } else { Casting::default() };
     let before =
         Before { scene: &scene, rays: &rays, places: &places, exposures: &exposures, map: &map, north_rad, casting };
     let after = (!edits.is_empty()).then(|| before.after(changes, &stages, cancel)).transpose()?;
@@ -80,7 +93,7 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
             files_after = after.places.write(folder, name, &scene, &after.exposures, colours, [&title, &note])?;
         }
     }
-    let found = Found::new(&scene, at, &places, &exposures, casting, &files);
+    let found = Found::new(&scene, at, &places, &exposures, &files);
     let update = after.as_ref().map(|after| Update {
         edits: edits.iter().map(typed).collect(),
         parts: after.changed[0],
@@ -89,9 +102,9 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
         again: after.again,
         seconds: after.seconds,
         full_seconds,
-        found: Found::new(&scene, at, &after.places, &after.exposures, casting, &files_after),
+        found: Found::new(&scene, at, &after.places, &after.exposures, &files_after),
     });
-    let report = Report::new(&scene, at, &map, seconds, found, update, &warnings);
+    let report = Report::new(&scene, at, &map, seconds, &chosen, found, update, &warnings);
     let json = serde_json::to_string(&report)?;
     if let Some(folder) = &mut folder {
         folder.file("exposure.json", |out| writeln!(out, "{json}"))?;

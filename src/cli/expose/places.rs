@@ -1,12 +1,13 @@
 //! Where `expose` asks, and which files become of the answers.
 
-use super::args::{At, ExposeArgs};
+use super::args::{At, ExposeArgs, WayName};
 use crate::cli::tell;
 use crate::cli::write::Folder;
 use crate::daylight::camera::{Buffers, Camera};
 use crate::daylight::cast::{Asked, Casting};
 use crate::daylight::dynamic::{Disturbance, seen_again};
 use crate::daylight::surface::{Corners, Patch, corners, default_patch_m, patches, patches_changed};
+use crate::daylight::way::Way;
 use crate::daylight::{self, Exposure, Point};
 use crate::export::exposures::mesh::{Colours, write_corners, write_patches};
 use crate::export::exposures::view::{View, write_exr, write_npy};
@@ -17,6 +18,10 @@ use crate::scene::Scene;
 use crate::scene::parts::Change;
 use anyhow::{Context, Result, bail};
 use std::io::Write;
+
+/// Tolerances of what is read, and of what is looked at.
+const SENSOR_TOLERANCE: f64 = 1.02;
+const PICTURE_TOLERANCE: f64 = 1.1;
 
 /// How the points lie.
 #[derive(Debug, Clone)]
@@ -92,6 +97,40 @@ pub fn casting(args: &ExposeArgs, at: At, seed: u64) -> Casting {
         sky_rays: args.sky_rays.unwrap_or(sky_rays),
         seed,
     }
+}
+
+/// The way that was asked for by name or by numbers of rays; `None` where tolerance is to choose. Edits are followed by rays.
+///
+/// # Errors
+/// Flags that do not go together.
+pub fn way(args: &ExposeArgs, at: At, seed: u64) -> Result<Option<Way>> {
+    let by_rays = args.sun_rays.is_some() || args.sky_rays.is_some();
+    let rays = Way::Rays(casting(args, at, seed));
+    let edited = !args.edits.all().is_empty();
+    match args.method {
+        Some(WayName::Rays) => Ok(Some(rays)),
+        Some(_) if by_rays => bail!("--sun-rays and --sky-rays are for --method rays"),
+        Some(_) if edited => bail!("--move, --scale and --hide are followed by --method rays"),
+        None if by_rays || edited => Ok(Some(rays)),
+        None => Ok(None),
+        Some(WayName::Isotropic) => Ok(Some(Way::Isotropic)),
+        Some(WayName::Maps) => {
+            let ways = ways(at, seed);
+            Ok(ways.into_iter().rfind(|way| matches!(way, Way::Maps(_) | Way::View { .. })))
+        }
+    }
+}
+
+/// The ways that tolerance chooses among.
+pub fn ways(at: At, seed: u64) -> [Way; 6] {
+    if at == At::Camera { Way::for_pixels(seed) } else { Way::for_points(seed) }
+}
+
+/// The factor within which exposure is to be right: as typed, else as the scene says, else 1.02; 1.1 where what comes of it is
+/// looked at and not read.
+pub fn tolerance(args: &ExposeArgs, at: At, scene: &Scene) -> f64 {
+    let by_place = if at == At::Sensors { SENSOR_TOLERANCE } else { PICTURE_TOLERANCE };
+    args.tolerance.or(scene.model.tolerance).unwrap_or(by_place)
 }
 
 /// The camera that was asked for; `None` for other places.
@@ -187,6 +226,11 @@ impl Places {
     pub fn asked(&self) -> Asked<'_> {
         let in_the_open = matches!(self.layout, Layout::Pixels(_));
         Asked { points: &self.points, numbers: Some(&self.numbers), in_the_open }
+    }
+
+    /// The buffers of the camera, where there is one.
+    pub fn buffers(&self) -> Option<&Buffers> {
+        if let Layout::Pixels(buffers) = &self.layout { Some(buffers) } else { None }
     }
 
     /// What share each point has in a mean: patches by their area, m2.
