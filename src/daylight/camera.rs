@@ -133,25 +133,39 @@ impl Camera {
         let back = VIEW.normalize();
         let aimed = Self::new((middle_m + half_m.length() * back).as_vec3(), middle_m.as_vec3(), fov_rad, size)?;
 
-        // The pyramid of view holds each corner of the box where it is no farther aside than the tangent of its depth. Of
-        // the places from which it holds all of them this is the nearest.
+        // The pyramid of view holds each corner of the box where it is no farther aside than the tangent of its depth: from how
+        // near can it hold all of them?
         let [right, up, forward] = [aimed.right, aimed.up, aimed.forward].map(Vec3::as_dvec3);
         let corners = (0..8_u8).map(|corner| {
             let side = |axis: u8| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
             half_m * DVec3::new(side(0), side(1), side(2))
         });
-        let fitted = |axis: DVec3, tangent: f64| {
+        let needed_m = |axis: DVec3, tangent: f64| {
             let edge = |side: f64| {
                 let reach = |at_m: DVec3| side * at_m.dot(axis) - tangent * at_m.dot(forward);
                 corners.clone().map(reach).fold(f64::NEG_INFINITY, f64::max)
             };
-            let [high, low] = [edge(1.0), edge(-1.0)];
-            ((high - low) / 2.0, (high + low) / (2.0 * tangent))
+            (edge(1.0) + edge(-1.0)) / (2.0 * tangent)
         };
         let [wide, high] = aimed.tangents();
-        let ((aside_m, across_m), (above_m, along_m)) = (fitted(right, wide), fitted(up, high));
-        let distance_m = across_m.max(along_m).max(half_m.length() * MARGIN) * (1.0 + MARGIN);
-        let to_m = middle_m + aside_m * right + above_m * up;
+        let needed_m = needed_m(right, wide).max(needed_m(up, high)).max(half_m.length() * MARGIN);
+        let distance_m = needed_m * (1.0 + MARGIN);
+
+        // And with as much room on one side as on the other: by halves, as nearer corners are seen farther aside.
+        let centred_m = |axis: DVec3| {
+            let room = |aside_m: f64, side: f64| {
+                let seen = |at_m: DVec3| side * (at_m.dot(axis) - aside_m) / (distance_m + at_m.dot(forward));
+                corners.clone().map(seen).fold(f64::NEG_INFINITY, f64::max)
+            };
+            let mut between_m = [-half_m.length(), half_m.length()];
+            for _ in 0..50 {
+                let aside_m = (between_m[0] + between_m[1]) / 2.0;
+                let is_short = room(aside_m, 1.0) > room(aside_m, -1.0);
+                between_m[if is_short { 0 } else { 1 }] = aside_m;
+            }
+            between_m[0]
+        };
+        let to_m = middle_m + centred_m(right) * right + centred_m(up) * up;
         Self::new((to_m + distance_m * back).as_vec3(), to_m.as_vec3(), fov_rad, size)
     }
 
@@ -372,7 +386,7 @@ mod tests {
             let filled = ((most[0] - least[0]) / 800.0).max((most[1] - least[1]) / 600.0);
             assert!(filled > 0.9, "{filled}");
             for (axis, side) in [(0, 800.0), (1, 600.0)] {
-                assert!((least[axis] + most[axis] - side).abs() < 0.1 * side, "in the middle: {least:?} {most:?}");
+                assert!((least[axis] + most[axis] - side).abs() < 1.0, "in the middle: {least:?} {most:?}");
             }
         }
     }
