@@ -208,7 +208,7 @@ fn files_name_their_parts() {
     let folder = tempfile::tempdir().unwrap();
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     let files = [
-        ("a.obj", format!("o lid\n{square}g rim\nv 2 2 2\nf 2 3 4\no lid\nf 1 3 4\n")),
+        ("a.obj", format!("o lid\n{square}g rim\nv 2 2 2\nf 2 3 4\no lid\nf 1 3 4\ng rim\nf 1 2 4\n")),
         ("b.obj", square.replace(" 0\n", " 7\n")),
         ("two.toml", "[geometry]\nmeshes = [\"a.obj\", \"b.obj\"]\n".to_owned()),
     ];
@@ -219,9 +219,8 @@ fn files_name_their_parts() {
         let scene = Scene::load(&folder.path().join(name), &Quiet, &Cancel::new()).unwrap();
         scene.parts.into_iter().map(|part| (part.name, part.triangles)).collect::<Vec<_>>()
     };
-    let ranges: [(String, &[std::ops::Range<u32>]); 2] =
-        [("lid".to_owned(), &[0..1, 2..3]), ("rim".to_owned(), &[1..2])];
-    assert_eq!(parts("a.obj"), ranges.map(|(name, ranges)| (name, ranges.to_vec())));
+    let [lid, rim] = [vec![0..1, 2..3], vec![1..2, 3..4]];
+    assert_eq!(parts("a.obj"), [("lid".to_owned(), lid), ("rim".to_owned(), rim)]);
     let names: Vec<String> = parts("two.toml").into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["a/lid", "a/rim", "b/b"]);
 }
