@@ -64,6 +64,7 @@ mod exposure_robust;
 
 /// Real cities against Radiance.
 mod cities;
+
 /// Exposure on faces, at vertices, and in pictures.
 mod views;
 
