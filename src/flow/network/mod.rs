@@ -222,6 +222,27 @@ impl<'a> Network<'a> {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<(Self, Vec<Line>), Cancelled> {
+        let of_lamps = |grounds: &Grounds| {
+            let promised = landing::promised(grounds);
+            let of = |shining| landing(grounds, quality, shining, &promised, settings.seed);
+            Ok(model.shining.iter().map(of).collect())
+        };
+        Self::lit_by(model, quality, settings, &of_lamps, progress, cancel)
+    }
+
+    /// The same for light from elsewhere: `land` says what lands straight on each patch, a landing a source. The unit is the
+    /// caller's: energies for fluxes, W, give energies per area for irradiances, W/m2.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `cancel` was raised.
+    pub fn lit_by(
+        model: &'a Model,
+        quality: &Quality,
+        settings: &Settings,
+        land: &dyn Fn(&Grounds) -> Result<Vec<Landing>, Cancelled>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> Result<(Self, Vec<Line>), Cancelled> {
         progress.begin("zones", 0);
         let grounds = Grounds::new(model, quality, settings.seed);
         progress.end();
@@ -237,9 +258,7 @@ impl<'a> Network<'a> {
         cancel.check()?;
 
         progress.begin("landing", 0);
-        let promised = landing::promised(&grounds);
-        let of = |shining| landing(&grounds, quality, shining, &promised, settings.seed);
-        let landings: Vec<Landing> = model.shining.iter().map(of).collect();
+        let landings = land(&grounds)?;
         progress.end();
         cancel.check()?;
 

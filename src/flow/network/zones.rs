@@ -85,6 +85,13 @@ impl Zones {
         group.first + (block.x + group.blocks.x * (block.y + group.blocks.y * block.z)) as u32
     }
 
+    /// The cell that a zone is a part of; `u32::MAX` for a number beyond the last.
+    pub fn cell(&self, zone: u32) -> u32 {
+        let group = self.groups.partition_point(|group| group.first <= zone).checked_sub(1);
+        let within = |group: &&Group| zone < group.first + group.blocks.element_product() as u32;
+        group.and_then(|group| self.groups.get(group)).filter(within).map_or(u32::MAX, |group| group.cell)
+    }
+
     /// The groups as ranges of zones, each with its cell.
     pub fn groups(&self) -> impl Iterator<Item = (std::ops::Range<u32>, u32)> {
         self.groups.iter().map(|group| {
