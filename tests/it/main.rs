@@ -55,3 +55,6 @@ mod exposure;
 
 /// What surfaces receive of sun and sky.
 mod daylight;
+
+/// What surfaces reflect of sun and sky.
+mod reflected;
