@@ -74,7 +74,11 @@ pub fn by_network(
     let falling = Falling { light, open: &open, seed };
     let settings = Settings { seed, shares: true, ..Settings::default() };
     let land = |grounds: &Grounds| falling.on_patches(grounds, cancel);
-    let (network, _) = Network::lit_by(model, quality, &settings, &land, progress, cancel)?;
+    progress.begin("zones", 0);
+    let grounds = Grounds::new(model, quality, seed).filled();
+    progress.end();
+    cancel.check()?;
+    let (network, _) = Network::lit_by(grounds, quality, &settings, &land, progress, cancel)?;
 
     progress.begin("gather", points.len() as u64);
     let rays = quality.gather.unwrap_or(GATHER);
@@ -88,6 +92,9 @@ pub fn by_network(
     progress.end();
     found
 }
+
+/// Every place that a sensor sees is asked for what lands on it: edges of shadows are sharp, and patches of towns large.
+const LARGE_FROM_RAYS: usize = 1;
 
 /// Rays of a point where the quality is for reading zones.
 const GATHER: Gather = Gather { rays: 768, neck_rays: 192 };
@@ -109,7 +116,7 @@ fn reflected(
     let sharpen =
         |patch: u32, at: &Start, all: f64, landing: &mut [f64]| falling.sharpen(grounds, patch, at, all, landing);
     let begin = Gathered { columns_w_m2: vec![0.0; COLUMNS], ..Gathered::default() };
-    let gathered = gathered(network, &sights, point.normal, &sharpen, begin);
+    let gathered = gathered(network, &sights, point.normal, &sharpen, LARGE_FROM_RAYS, begin);
     let column = |number: usize| gathered.columns_w_m2.get(number).copied().unwrap_or(0.0);
 
     let necks = necks_of(&grounds.portals, cell, from_m);

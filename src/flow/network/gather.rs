@@ -105,18 +105,20 @@ fn at_probe(network: &Network, rays: &Gather, probe: &Probe, offset: [f64; 2]) -
         }
     };
     let begin = Gathered { all: straight, columns_w_m2: row, error_w_m2: 0.0 };
-    let gathered = gathered(network, &sights, probe.normal, &sharpen, begin);
+    let gathered = gathered(network, &sights, probe.normal, &sharpen, LARGE_FROM_RAYS, begin);
     let Direct { value_w_m2, flux_w_m2 } = gathered.all;
     let status = network.status(node, value_w_m2);
     (Reading { value_w_m2, flux_w_m2, error_w_m2: Some(gathered.error_w_m2), status }, gathered.columns_w_m2)
 }
 
-/// What patches send along sights, on top of what a sensor with that normal has to `begin` with.
+/// What patches send along sights, on top of what a sensor with that normal has to `begin` with; a patch that at least
+/// `large_from_rays` of them meet is `sharpen`ed.
 pub fn gathered(
     network: &Network,
     sights: &[Sight],
     normal: Option<Vec3>,
     sharpen: &Sharpen,
+    large_from_rays: usize,
     begin: Gathered,
 ) -> Gathered {
     let Gathered { all: Direct { mut value_w_m2, mut flux_w_m2 }, columns_w_m2: mut row, .. } = begin;
@@ -139,7 +141,7 @@ pub fn gathered(
         for (landing_w_m2, landing) in landing_w_m2.iter_mut().zip(&network.landings) {
             *landing_w_m2 = landing.flux_w[patch] / area_m2;
         }
-        if rays_to(sight.patch) >= LARGE_FROM_RAYS {
+        if rays_to(sight.patch) >= large_from_rays {
             let all_w_m2: f64 =
                 reflected_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;
             sharpen(sight.patch, &sight.at, all_w_m2, &mut landing_w_m2);
