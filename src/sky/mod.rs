@@ -20,6 +20,7 @@ pub mod facade;
 pub mod hosek;
 pub mod lit;
 pub mod map;
+pub mod moment;
 pub mod perez;
 pub mod picture;
 pub mod simple_sun;

@@ -139,12 +139,14 @@ fn step_min(text: &str) -> Result<f64, String> {
     within(text, 1.0, 1440.0)
 }
 
-fn date(text: &str) -> Result<Date, String> {
+/// A day YYYY-MM-DD.
+pub fn date(text: &str) -> Result<Date, String> {
     let date: Date = text.parse().map_err(|_| "not a day YYYY-MM-DD of the calendar".to_owned())?;
     if (1..=3000).contains(&date.year()) { Ok(date) } else { Err("the year is outside 1 to 3000".to_owned()) }
 }
 
-fn time(text: &str) -> Result<Time, String> {
+/// A time HH:MM.
+pub fn time(text: &str) -> Result<Time, String> {
     Time::strptime("%H:%M", text).map_err(|_| "not a time HH:MM, 00:00 to 23:59".to_owned())
 }
 

@@ -8,6 +8,7 @@
 //! Limits: those of the network; walls are Lambertian, glazing passes light straight on, openings that the voxels close let
 //! nothing reflected through. Ground beyond the mesh is black.
 
+pub mod heuristics;
 pub mod landing;
 pub mod openings;
 pub mod skylight;
@@ -16,11 +17,13 @@ use super::cast::Casting;
 use super::{Exposure, Point};
 use crate::flow::network::gather::{Gathered, gathered, necks_of, sights};
 use crate::flow::network::patches::Start;
+use crate::flow::network::portals::Portal;
 use crate::flow::network::{Gather, Grounds, Network, Quality};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Settings, Status};
 use crate::model::Model;
+use crate::rays::Rays;
 use glam::Vec3;
 use landing::Falling;
 use rayon::prelude::*;
@@ -30,7 +33,7 @@ use skylight::{Asked, Asking, COLUMNS, Skylight};
 /// Offsets of the sensors' sequences start here.
 const SENSOR_OFFSETS: u64 = 1 << 50;
 
-/// What surfaces reflect to a point.
+/// What surfaces reflect to a point, and what only rays through necks tell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Reflected {
     /// Of the sun's beams, kWh/m2.
@@ -69,7 +72,7 @@ pub fn by_network(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<Reflected>, Cancelled> {
-    let Casting { seed, sky_rays, .. } = casting;
+    let seed = casting.seed;
     let open = openings::open_cells(model);
     let falling = Falling { light, open: &open, seed };
     let settings = Settings { seed, shares: true, ..Settings::default() };
@@ -85,8 +88,7 @@ pub fn by_network(
     let at_point = |(number, point): (usize, &Point)| {
         cancel.check()?;
         progress.advance(1);
-        let offset = sequence::offset(seed, SENSOR_OFFSETS + number as u64);
-        Ok(reflected(&network, &falling, rays, sky_rays, point, offset))
+        Ok(reflected(&network, &falling, rays, point, casting, number))
     };
     let found = points.par_iter().enumerate().map(at_point).collect();
     progress.end();
@@ -96,6 +98,9 @@ pub fn by_network(
 /// Every place that a sensor sees is asked for what lands on it: edges of shadows are sharp, and patches of towns large.
 const LARGE_FROM_RAYS: usize = 1;
 
+/// To each neck of its room a point sends this share of its directions of the sky.
+const NECK_SHARE: u32 = 8;
+
 /// Rays of a point where the quality is for reading zones.
 const GATHER: Gather = Gather { rays: 768, neck_rays: 192 };
 
@@ -103,10 +108,11 @@ fn reflected(
     network: &Network,
     falling: &Falling,
     rays: Gather,
-    sky_rays: u32,
     point: &Point,
-    offset: [f64; 2],
+    casting: Casting,
+    number: usize,
 ) -> Reflected {
+    let offset = sequence::offset(casting.seed, SENSOR_OFFSETS + number as u64);
     let grounds = &network.grounds;
     let model = grounds.model;
     let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
@@ -119,18 +125,54 @@ fn reflected(
     let gathered = gathered(network, &sights, point.normal, &sharpen, LARGE_FROM_RAYS, begin);
     let column = |number: usize| gathered.columns_w_m2.get(number).copied().unwrap_or(0.0);
 
-    let necks = necks_of(&grounds.portals, cell, from_m);
-    let in_room = !necks.is_empty() && !is_open(falling.open, cell);
-    let necks = if in_room { &necks[..] } else { &[] };
-    let asked = Asked { from_m, normal: point.normal, necks, offset };
-    let asking = Asking { suns: 0, sky_rays, neck_rays: sky_rays / 8 };
-    let [[sky, overcast], [error, _]] = falling.light.skies_at(&model.rays, &asked, asking);
+    let necks = if is_open(falling.open, cell) { Vec::new() } else { necks_of(&grounds.portals, cell, from_m) };
+    let straight = straight(&model.rays, falling.light, point, &necks, casting, number);
     Reflected {
         of_beam_kwh_m2: column(0),
         of_sky_kwh_m2: column(1),
         error_kwh_m2: gathered.error_w_m2,
-        daylight_factor: (overcast + column(2)) / falling.light.overcast_kwh_m2,
-        sky_through_necks: in_room.then_some((sky, error)),
+        daylight_factor: straight.daylight_factor + column(2) / falling.light.overcast_kwh_m2,
+        ..straight
+    }
+}
+
+/// Nothing reflected, for surfaces that are black: what comes straight from the overcast sky alone, so that daylight factors
+/// are known.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn by_nothing(
+    rays: &Rays,
+    points: &[Point],
+    light: &Skylight,
+    casting: Casting,
+    cancel: &Cancel,
+) -> Result<Vec<Reflected>, Cancelled> {
+    let at_point = |(number, point)| {
+        cancel.check()?;
+        Ok(straight(rays, light, point, &[], casting, number))
+    };
+    points.par_iter().enumerate().map(at_point).collect()
+}
+
+/// What comes straight from the overcast sky, and through necks from the period's.
+fn straight(
+    rays: &Rays,
+    light: &Skylight,
+    point: &Point,
+    necks: &[&Portal],
+    casting: Casting,
+    number: usize,
+) -> Reflected {
+    let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
+    let offset = sequence::offset(casting.seed, SENSOR_OFFSETS + number as u64);
+    let asked = Asked { from_m, normal: point.normal, necks, offset };
+    let asking = Asking { suns: 0, sky_rays: casting.sky_rays, neck_rays: casting.sky_rays / NECK_SHARE };
+    let [[sky, overcast], [error, _]] = light.skies_at(rays, &asked, asking);
+    Reflected {
+        daylight_factor: overcast / light.overcast_kwh_m2,
+        sky_through_necks: (!necks.is_empty()).then_some((sky, error)),
+        ..Reflected::default()
     }
 }
 
@@ -141,8 +183,9 @@ pub fn add(exposures: &mut [Exposure], reflected: &[Reflected]) {
             continue;
         }
         exposure.reflected_kwh_m2 = reflected.all_kwh_m2();
-        if let Some((sky_kwh_m2, _)) = reflected.sky_through_necks {
+        if let Some((sky_kwh_m2, error_kwh_m2)) = reflected.sky_through_necks {
             exposure.sky_kwh_m2 = sky_kwh_m2;
+            exposure.error_kwh_m2 = exposure.error_kwh_m2.hypot(error_kwh_m2);
         }
         exposure.error_kwh_m2 = exposure.error_kwh_m2.hypot(reflected.error_kwh_m2);
         if exposure.total_kwh_m2() > 0.0 {
