@@ -15,7 +15,7 @@ use crate::daylight::reflect::heuristics::by_heuristic;
 use crate::daylight::reflect::openings::open_cells;
 use crate::daylight::reflect::skylight::Skylight;
 use crate::daylight::reflect::{self, Reflected, by_network, by_nothing};
-use crate::daylight::{self, Point};
+use crate::daylight::{self, Exposure, Point};
 use crate::export;
 use crate::flow::network::Quality;
 use crate::job::Cancel;
@@ -105,7 +105,7 @@ pub fn run(args: &DaylightArgs, cancel: &Cancel) -> Result<()> {
     let points = daylight::points(&scene.sensors);
     let mut exposures = cast(&rays, &points, &map, outdoors.north_rad, casting, &stages, cancel)?;
     let light = Skylight::new(&map, outdoors.north_rad);
-    let asked = Asked { method: args.method, points: &points, light: &light, casting };
+    let asked = Asked { method: args.method, points: &points, exposures: &exposures, light: &light, casting };
     let reflected = reflected(model, &rays, &asked, &stages, cancel)?;
     reflect::add(&mut exposures, &reflected);
     let seconds = begin.elapsed().as_secs_f64();
@@ -203,6 +203,7 @@ fn told(scene: &Scene, model: Option<&Model>, method: Method) -> (Option<f32>, V
 struct Asked<'a> {
     method: Method,
     points: &'a [Point],
+    exposures: &'a [Exposure],
     light: &'a Skylight<'a>,
     casting: Casting,
 }
@@ -214,12 +215,12 @@ fn reflected(
     stages: &Stages,
     cancel: &Cancel,
 ) -> Result<Vec<Reflected>> {
-    let &Asked { method, points, light, casting } = asked;
+    let &Asked { method, points, exposures, light, casting } = asked;
     Ok(match (model, method) {
         (None, _) => by_nothing(rays, points, light, casting, cancel)?,
         (Some(model), Method::Network) => {
             by_network(&model, points, light, &Quality::MEDIUM, casting, stages, cancel)?
         }
-        (Some(model), _) => by_heuristic(method, model, points, light, casting, stages, cancel)?,
+        (Some(model), _) => by_heuristic(method, model, (points, exposures), light, casting, stages, cancel)?,
     })
 }

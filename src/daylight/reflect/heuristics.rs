@@ -1,21 +1,18 @@
 //! What would the poster's heuristics, or diffusion, bring into rooms, with the openings as lights?
 //!
 //! Every neck between a cell in the open and one that is not becomes a lamp: a square of the neck's area that shines inwards, by
-//! the cosine, with the flux of sun and sky that passes the neck, found by rays from it. The estimator carries that light
-//! through the rooms as it carries a lamp's. What comes straight from the sky is known better by rays, so of the estimate
-//! what comes straight from these lamps is left out: `backward` and `forward` count for openings that the point does not see,
-//! `diffusion` counts less what shadow rays say of the lamps.
+//! the cosine, with the flux of sun and sky that passes the neck, straight and off the first surface outside, found by rays from
+//! it. The estimator carries that light through the rooms as it carries a lamp's. What it says at a point stands for all that
+//! comes through the openings; what of that is beam and sky is known by rays, and the rest counts as reflected.
 //!
-//! Limits: a preview, like the methods. Points in the open get nothing reflected. What the street sends into a window is
-//! not in its flux. Light keeps no direction on its way through a neck: no sun patch falls on a floor, no blind shades. Glazing
-//! where the voxels have no neck is no opening.
+//! Limits: a preview, like the methods. Points in the open get nothing reflected. Light keeps no direction on its way through a
+//! neck: no sun patch falls on a floor, no shelf shades. Glazing where the voxels have no neck is no opening.
 
 use super::openings::{is_open, open_cells};
 use super::skylight::{Asked, Asking, COLUMNS, Skylight};
-use super::{Reflected, straight};
-use crate::daylight::Point;
+use super::{Reflected, by_nothing};
 use crate::daylight::cast::Casting;
-use crate::flow::direct::direct;
+use crate::daylight::{Exposure, Point};
 use crate::flow::estimator;
 use crate::flow::network::portals::Portal;
 use crate::flow::sequence;
@@ -32,8 +29,12 @@ const POINTS: u32 = 256;
 /// What each of them asks.
 const AT_POINT: Asking = Asking { suns: 16, sky_rays: 16, neck_rays: 0 };
 
-/// Shadow rays to an opening where what comes straight from it is left out.
-const STRAIGHT_RAYS: u32 = 64;
+/// What the surfaces ask that are seen from there, and how many of them.
+const AT_SURFACE: Asking = Asking { suns: 4, sky_rays: 4, neck_rays: 0 };
+const SURFACES: u32 = 4;
+
+/// Panes that are looked through.
+const MOST_PANES: u32 = 4;
 
 /// Offsets of the sequences start here.
 const OFFSETS: u64 = 1 << 51;
@@ -69,8 +70,12 @@ pub fn openings(model: &Model, light: &Skylight, seed: u64) -> Vec<Opening> {
             let from_m = portal.point_m(point, POINTS, place) + inside_m;
             let offset = sequence::square(point, beside);
             let asked = Asked { from_m, normal: Some(-inwards), necks: &[], offset };
-            let brought = light.at_point(&model.rays, &asked, AT_POINT);
-            flux_kwh.iter_mut().zip(brought).for_each(|(sum, part)| *sum += part * portal.area_m2 / f64::from(POINTS));
+            let straight = light.at_point(&model.rays, &asked, AT_POINT);
+            let sent = sent_back(model, light, &asked, -inwards);
+            let each_m2 = portal.area_m2 / f64::from(POINTS);
+            for (column, flux_kwh) in flux_kwh.iter_mut().enumerate() {
+                *flux_kwh += each_m2 * (straight[column] + sent[column]);
+            }
         }
         let (u, v) = inwards.any_orthonormal_pair();
         // A quad shines along u x v.
@@ -83,14 +88,45 @@ pub fn openings(model: &Model, light: &Skylight, seed: u64) -> Vec<Opening> {
     portals.par_iter().enumerate().filter_map(opening).collect()
 }
 
+/// What surfaces outside send to a point after one reflection, kWh/m2.
+fn sent_back(model: &Model, light: &Skylight, asked: &Asked, outwards: Vec3) -> [f64; COLUMNS] {
+    let mut sums = [0.0; COLUMNS];
+    for ray in 0..SURFACES {
+        let direction = sequence::cosine_about(outwards, sequence::square(ray, asked.offset));
+        let Some((from_m, normal, share)) = wall(model, asked.from_m, direction) else { continue };
+        let offset = sequence::square(ray, [asked.offset[1], asked.offset[0]]);
+        let at_wall = Asked { from_m, normal: Some(normal), necks: &[], offset };
+        let lands = light.at_point(&model.rays, &at_wall, AT_SURFACE);
+        sums.iter_mut().zip(lands).for_each(|(sum, lands)| *sum += share * lands / f64::from(SURFACES));
+    }
+    sums
+}
+
+/// Where a ray meets a wall, clear of it, the wall's normal there, and the share that it sends back through the glazing before.
+fn wall(model: &Model, mut from_m: Vec3, direction: Vec3) -> Option<(Vec3, Vec3, f64)> {
+    let mut share = 1.0;
+    for _ in 0..MOST_PANES {
+        let hit = model.rays.closest(from_m, direction, f32::INFINITY)?;
+        let (answer, lift_m) = (model.walls.answer(hit.surface), hit.facing() * model.rays.epsilon_m());
+        let at_m = from_m + hit.distance_m * direction;
+        if answer.passes <= 0.0 {
+            return Some((at_m + lift_m, hit.facing(), share * f64::from(answer.reflects)));
+        }
+        share *= f64::from(answer.passes);
+        from_m = at_m - lift_m;
+    }
+    None
+}
+
 /// What an estimator on the skeleton brings to each point, the openings being its lights; the scene's own lights are put out.
+/// `exposures` are what rays know of the points' beam and sky.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn by_heuristic(
     method: Method,
     mut model: Model,
-    points: &[Point],
+    (points, exposures): (&[Point], &[Exposure]),
     light: &Skylight,
     casting: Casting,
     progress: &dyn Progress,
@@ -102,59 +138,34 @@ pub fn by_heuristic(
     progress.end();
     cancel.check()?;
 
-    let mut found: Vec<Reflected> =
-        points.par_iter().enumerate().map(|(number, point)| straight(&model.rays, light, point, &[], casting, number)).collect();
+    let mut found = by_nothing(&model.rays, points, light, casting, cancel)?;
     let probes: Vec<Probe> = points.par_iter().map(|point| model.probe(point.position_m, point.normal)).collect();
-    let cell = |probe: &Probe| probe.place.ok().and_then(|node| model.skeleton.graph.node_weight(node)).map(|node| node.cell);
-    let in_rooms: Vec<bool> =
-        probes.iter().map(|probe| cell(probe).is_some_and(|cell| !is_open(&open, cell))).collect();
-
-    // The estimators are linear: each source of light by itself, and for those that see an opening or not each opening.
-    let all: Vec<&Opening> = openings.iter().collect();
-    let groups: Vec<Vec<&Opening>> =
-        if method == Method::Diffusion { vec![all] } else { openings.iter().map(|opening| vec![opening]).collect() };
     let settings = Settings { seed: casting.seed, ..Settings::default() };
     let Some(estimate) = estimator(method) else { return Ok(found) };
-    for group in groups {
-        for column in 0..COLUMNS {
-            cancel.check()?;
-            light_with(&mut model, &group, column);
-            let field = estimate(&model, &probes, &settings, progress, cancel)?;
-            let carried: Vec<f64> = (probes.par_iter().zip(&field.readings).enumerate())
-                .map(|(number, (probe, reading))| {
-                    let offset = sequence::offset(casting.seed, OFFSETS ^ number as u64);
-                    (reading.value_w_m2 - straight_w_m2(method, &model, probe, reading.value_w_m2, offset)).max(0.0)
-                })
-                .collect();
-            for ((found, carried_kwh_m2), in_room) in found.iter_mut().zip(carried).zip(&in_rooms) {
-                match column {
-                    _ if !in_room => {}
-                    0 => found.of_beam_kwh_m2 += carried_kwh_m2,
-                    1 => found.of_sky_kwh_m2 += carried_kwh_m2,
-                    _ => found.daylight_factor += carried_kwh_m2 / light.overcast_kwh_m2,
-                }
+    for column in 0..COLUMNS {
+        light_with(&mut model, &openings, column);
+        let field = estimate(&model, &probes, &settings, progress, cancel)?;
+        for (((found, exposure), probe), reading) in
+            found.iter_mut().zip(exposures).zip(&probes).zip(&field.readings)
+        {
+            let cell = probe.place.ok().and_then(|node| model.skeleton.graph.node_weight(node)).map(|node| node.cell);
+            if cell.is_none_or(|cell| is_open(&open, cell)) {
+                continue;
+            }
+            let comes = reading.value_w_m2;
+            match column {
+                0 => found.of_beam_kwh_m2 = (comes - exposure.beam_kwh_m2).max(0.0),
+                1 => found.of_sky_kwh_m2 = (comes - exposure.sky_kwh_m2).max(0.0),
+                _ => found.daylight_factor = found.daylight_factor.max(comes / light.overcast_kwh_m2),
             }
         }
     }
     Ok(found)
 }
 
-/// What of an estimate comes straight from its lights: all of it, where the heuristics see one.
-fn straight_w_m2(method: Method, model: &Model, probe: &Probe, value_w_m2: f64, offset: [f64; 2]) -> f64 {
-    if method == Method::Diffusion {
-        let at_m = probe.position_m + probe.normal.unwrap_or(Vec3::ZERO) * 2.0 * model.rays.epsilon_m();
-        let of = |shining: &Shining| {
-            direct(model, at_m, probe.normal, shining.emitter, STRAIGHT_RAYS, offset).value_w_m2
-        };
-        return model.shining.iter().map(of).sum();
-    }
-    let is_seen = model.shining.iter().any(|shining| model.straight_share(probe.position_m, shining) > 0.0);
-    if is_seen { value_w_m2 } else { 0.0 }
-}
-
 /// Puts openings in the place of the lights of a model, with the flux of one column. They have no body.
-fn light_with(model: &mut Model, openings: &[&Opening], column: usize) {
-    let emitter = |(number, opening): (usize, &&Opening)| {
+fn light_with(model: &mut Model, openings: &[Opening], column: usize) {
+    let emitter = |(number, opening): (usize, &Opening)| {
         let [corner_m, u_m, v_m] = opening.quad;
         let flux_w = opening.flux_kwh[column];
         // A number that no body of the scene has.
@@ -162,7 +173,7 @@ fn light_with(model: &mut Model, openings: &[&Opening], column: usize) {
     };
     model.sources = Sources { emitters: openings.iter().enumerate().map(emitter).collect() };
     model.sampler = Sampler::new(&Scene::default(), &model.sources, model.rays.epsilon_m());
-    let shining = |(emitter, opening): (usize, &&Opening)| {
+    let shining = |(emitter, opening): (usize, &Opening)| {
         let place = model.place(opening.position_m, Some(opening.inwards));
         let to_node_m = place.map_or(0.0, |node| f64::from(model.node_m(node).distance(opening.position_m)));
         Shining { emitter, position_m: opening.position_m, flux_w: opening.flux_kwh[column], place, to_node_m }
