@@ -62,17 +62,22 @@ pub fn openings(model: &Model, light: &Skylight, seed: u64) -> Vec<Opening> {
     let portals: Vec<Portal> = model.skeleton.necks.iter().filter_map(Portal::new).collect();
     let opening = |(number, portal): (usize, &Portal)| {
         let inwards = into_rooms(portal)?;
-        // From a voxel inside, so that glazing in the neck lies before the rays.
-        let inside_m = inwards * model.voxels.lattice.voxel_m;
+        // Glazing may lie on either side of the neck's plane: what is within a voxel of it is asked for apart.
+        let aside_m = inwards * model.voxels.lattice.voxel_m;
         let [place, beside] = [0, 1].map(|part| sequence::offset(seed, OFFSETS + 2 * number as u64 + part));
         let mut flux_kwh = [0.0; COLUMNS];
         for point in 0..POINTS {
-            let from_m = portal.point_m(point, POINTS, place) + inside_m;
+            let at_m = portal.point_m(point, POINTS, place);
+            let passes = f64::from(model.rays.transmitted_past(at_m + aside_m, at_m - aside_m, |_| false));
+            if passes <= 0.0 {
+                continue;
+            }
+            let from_m = at_m - aside_m;
             let offset = sequence::square(point, beside);
             let asked = Asked { from_m, normal: Some(-inwards), necks: &[], offset };
             let straight = light.at_point(&model.rays, &asked, AT_POINT);
             let sent = sent_back(model, light, &asked, -inwards);
-            let each_m2 = portal.area_m2 / f64::from(POINTS);
+            let each_m2 = passes * portal.area_m2 / f64::from(POINTS);
             for (column, flux_kwh) in flux_kwh.iter_mut().enumerate() {
                 *flux_kwh += each_m2 * (straight[column] + sent[column]);
             }

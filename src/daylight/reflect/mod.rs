@@ -99,7 +99,7 @@ pub fn by_network(
 const LARGE_FROM_RAYS: usize = 1;
 
 /// To each neck of its room a point sends this share of its directions of the sky.
-const NECK_SHARE: u32 = 8;
+const NECK_SHARE: u32 = 2;
 
 /// Rays of a point where the quality is for reading zones.
 const GATHER: Gather = Gather { rays: 768, neck_rays: 192 };
