@@ -6,6 +6,7 @@
 Reads the scene file, its meshes and its sensors by code of its own, hands them to the oracle and writes beside the scene:
     exposure_<weather>.csv   id,beam,sky,reflected,total   kWh/m2 over the weather's year
     svf.csv                  id,svf                        cosine-weighted sky view factor, nothing reflected
+A scene that has no folder of its own puts its name before theirs: ingolstadt_svf.csv.
 Needs Python 3.11, and pyradiance and numpy for the oracle. Knows one reflectance a scene, and no glazing.
 """
 import argparse
@@ -53,7 +54,7 @@ def main():
     parser.add_argument("scene", nargs="+")
     parser.add_argument("--oracle", required=True)
     parser.add_argument("--weather", required=True, help="an .epw file")
-    parser.add_argument("--bounces", type=int, default=5)
+    parser.add_argument("--bounces", type=int, default=5, help="0: beam and sky alone, in a tenth of the time")
     parser.add_argument("--mf", type=int, default=4, help="the sky's patches: 145 mf^2")
     parser.add_argument("--samples", type=int, default=20000, help="rays of the first bounce, a sensor")
     parser.add_argument("--table", help="name of the exposure's table, if not exposure_<weather>.csv")
@@ -66,6 +67,8 @@ def main():
         if others:
             raise SystemExit(f"{path}: more than one reflectance")
         name = scene.table.get("name", scene.path.stem)
+        stem = scene.path.stem
+        prefix = "" if scene.path.resolve().parent.name == stem else f"{stem}_"
         made = [
             f"# values of an independent program, not of Lightvein: Radiance as pyradiance {version('pyradiance')} ships it,"
             " through radiance_annual.py",
@@ -76,17 +79,19 @@ def main():
             rows, seconds = ask(scene, options, ["--svf", *taken])
             setup = f"# {options.samples} rays a sensor, {seconds:.0f} s for {len(rows)} sensors"
             title = f"# {name}: sky view factor, cosine-weighted: open ground 1, a wall on open ground 0.5"
-            write(scene.path.parent / "svf.csv", [title, *made, setup, "id,svf", *rows])
-            print(f"{path}: svf.csv, {len(rows)} sensors in {seconds:.0f} s", flush=True)
+            table = scene.path.parent / f"{prefix}svf.csv"
+            write(table, [title, *made, setup, "id,svf", *rows])
+            print(f"{path}: {table.name}, {len(rows)} sensors in {seconds:.0f} s", flush=True)
         if options.only != "svf":
             flags = [f"--reflectance={reflectance}", f"--bounces={options.bounces}", f"--mf={options.mf}", *taken]
             rows, seconds = ask(scene, options, flags)
+            bounced = f"reflectance {reflectance}, {options.bounces} bounces" if options.bounces else "nothing reflected"
             setup = (
-                f"# reflectance {reflectance}, {options.bounces} bounces, sky of {145 * options.mf ** 2} patches (MF{options.mf}),"
+                f"# {bounced}, sky of {145 * options.mf ** 2} patches (MF{options.mf}),"
                 f" suns where they stand every hour, {options.samples} rays a sensor, {seconds:.0f} s for {len(rows)} sensors"
             )
             title = f"# {name}: kWh/m2 over the year of {weather.name}, the sky of another place taken as it is"
-            table = scene.path.parent / (options.table or f"exposure_{weather.stem}.csv")
+            table = scene.path.parent / (options.table or f"{prefix}exposure_{weather.stem}.csv")
             write(table, [title, *made, setup, "id,beam,sky,reflected,total", *rows])
             print(f"{path}: {table.name}, {len(rows)} sensors in {seconds:.0f} s", flush=True)
 

@@ -4,8 +4,8 @@
     scenes/real/make_real.py ../shared/data [NAME...]
 
 The data lies beside the project and is not part of it. Lights come from the data where it has any; sensors are points
-spread over the void (void_points.py), named s1, s2, ... Lights and sensors are in metres, Z up, as everything after
-loading. Needs Python 3.11, numpy and scipy.
+spread over the void (void_points.py), named s1, s2, ..., or over the faces of a city (open_faces.py). Lights and sensors are
+in metres, Z up, as everything after loading. Needs Python 3.11, numpy and scipy, and pyradiance for the cities.
 """
 import json
 import math
@@ -16,6 +16,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from mesh_files import SceneFile, luminance, read_obj  # noqa: E402
+from open_faces import OFF_M, in_open_air  # noqa: E402
 from void_points import Void  # noqa: E402
 
 # Where the data is, seen from this folder.
@@ -159,6 +160,29 @@ emissive face (Ke), which looks down. Data: McGuire's Computer Graphics Archive.
     )
 
 
+def kind_of(normal):
+    """What a face is, by where it looks: up, aside or down."""
+    return "roof" if normal[2] > 0.5 else "facade" if normal[2] > -0.5 else "soffit"
+
+
+def city(name, mesh, about):
+    """Writes <name>.toml, a scene under Chicago's sky, and its sensors on the faces that stand in the open air."""
+    lines = ["# made by: scenes/real/make_real.py ../shared/data"]
+    lines += [f"# {line}" for line in about.strip().splitlines()]
+    lines += [f'name = "{name}"', "", "[geometry]", f'meshes = ["{DATA}/city/{mesh}.obj"]', "unit_m = 1.0", 'up = "z"']
+    lines += ["reflectance = 0.5", "", "[sensors]", f'file = "{name}_sensors.csv"', ""]
+    lines += ["# Chicago as a stand-in; its weather is no part of this project, so the sky is a clear one.", "[site]"]
+    lines += ["latitude_deg = 41.98", "longitude_deg = -87.92", "utc_offset_h = -6.0", "turbidity = 3.0"]
+    path = HERE / f"{name}.toml"
+    path.write_text("\n".join(lines) + "\n")
+    rows = [
+        f"{kind_of(normal)}_{i + 1:03},{','.join(number(c) for c in [*position, *normal])}"
+        for i, (position, normal) in enumerate(in_open_air(SceneFile(path), 400, seed=1))
+    ]
+    spread = f"# on faces in the open air, at random by area, {1000 * OFF_M:g} mm off them on the side that sees more sky"
+    (HERE / f"{name}_sensors.csv").write_text("\n".join([lines[0], spread, "id,x,y,z,nx,ny,nz", *rows]) + "\n")
+
+
 def main():
     data = Path(sys.argv[1])
     scenes = {
@@ -172,6 +196,11 @@ Three lights lie exactly on the faces of ceiling beams.""", ["solid", "sky", "mo
         "cornell_original": lambda: cornell("cornell_original", "CornellBox-Original", """The Cornell box with its two blocks. Its MTL is named by a path of its maker's machine; the file of that name
 beside the mesh is meant."""),
         "cornell_empty_white": lambda: cornell("cornell_empty_white", "CornellBox-Empty-White", """The empty Cornell box in white: walls of reflectance 1, which only the open front drains."""),
+        "ingolstadt": lambda: city("ingolstadt", "ingolstadt_lod3_mid", """The middle part of Ingolstadt's road space models, LoD3: eaves, balconies, windows; no height field, and no ground.
+As it comes: faces twice, faces without area, sheets, and faces that look inwards.
+Sensors are the mesh's: this file and its sensors, like the mesh, are under CC BY-SA 4.0 (savenow/lod3-road-space-models)."""),
+        "den_haag": lambda: city("den_haag", "DenHaag_01", """A part of Den Haag, LoD2, 790 x 670 m: blocks with roofs, on terrain.
+Data: CC BY 4.0, Gemeente Den Haag."""),
     }
     for name in sys.argv[2:] or scenes:
         scenes[name]()

@@ -7,8 +7,8 @@
 //! sky's standard error, twice too large or so, for together they are spread more evenly than each.
 //!
 //! Cost: a ray a sun and a ray a direction, some 0.3 us each and thread, so 3 ms a sensor for all suns of a year of hours.
-//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, so meshes must be closed
-//! or face outwards.
+//! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, or no sky and more backs
+//! than fronts, so meshes must be closed or face outwards.
 
 use super::beams::{Beam, beam_at, in_order};
 use super::{Exposure, Point};
@@ -50,6 +50,30 @@ impl Default for Casting {
     }
 }
 
+/// Points to be asked.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked<'a> {
+    /// Where.
+    pub points: &'a [Point],
+    /// A number for each, by which its sequences are turned; `None` for its place in the list. A point that keeps its number
+    /// gets the same bits, whoever is asked beside it.
+    pub numbers: Option<&'a [u32]>,
+    /// Whether all are known to stand in the open, as what a camera sees does: none is looked at for being inside matter.
+    pub in_the_open: bool,
+}
+
+impl<'a> Asked<'a> {
+    /// Points that may lie anywhere, numbered by their place in the list.
+    pub fn all(points: &'a [Point]) -> Self {
+        Self { points, numbers: None, in_the_open: false }
+    }
+
+    /// The number of the point at a place in the list.
+    pub fn number(&self, at: usize) -> u64 {
+        self.numbers.and_then(|numbers| numbers.get(at)).map_or(at as u64, |&number| u64::from(number))
+    }
+}
+
 /// What each point receives of a map's sun and sky, in their order. `north_rad` is the direction of true north, clockwise
 /// from the scene's +Y.
 ///
@@ -64,21 +88,48 @@ pub fn cast(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<Exposure>, Cancelled> {
-    progress.begin("rays", points.len() as u64);
+    cast_at(rays, Asked::all(points), map, north_rad, casting, progress, cancel)
+}
+
+/// As [`cast`], for points with numbers of their own, or known to stand in the open.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn cast_at(
+    rays: &Rays,
+    asked: Asked,
+    map: &ExposureMap,
+    north_rad: f64,
+    casting: Casting,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<Exposure>, Cancelled> {
+    progress.begin("rays", asked.points.len() as u64);
     let suns = in_order(map, north_rad);
     let sky = Sky { map, north_rad };
-    let exposures: Result<Vec<Exposure>, Cancelled> = points
+    let exposures: Result<Vec<Exposure>, Cancelled> = asked
+        .points
         .par_iter()
         .enumerate()
-        .map(|(number, point)| {
+        .map(|(at, point)| {
             cancel.check()?;
-            let exposure = at_point(rays, point, &suns, &sky, casting, number as u64);
+            let from_m = stands_at(rays, point);
+            let exposure = if !asked.in_the_open && is_inside(rays, from_m) {
+                Exposure::none(Status::InSolid)
+            } else {
+                at_point(rays, from_m, point.normal, &suns, &sky, casting, asked.number(at))
+            };
             progress.advance(1);
             Ok(exposure)
         })
         .collect();
     progress.end();
     exposures
+}
+
+/// Where the rays of a point begin, metres: just off its surface.
+pub(super) fn stands_at(rays: &Rays, point: &Point) -> Vec3 {
+    rays.off_surface(point.position_m, point.normal)
 }
 
 /// The sky of a map, by directions of the scene.
@@ -102,35 +153,33 @@ impl Sky<'_> {
     }
 }
 
-fn at_point(rays: &Rays, point: &Point, suns: &[Beam], sky: &Sky, casting: Casting, number: u64) -> Exposure {
-    let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
-    if is_inside(rays, from_m) {
-        return Exposure::none(Status::InSolid);
-    }
+fn at_point(
+    rays: &Rays,
+    from_m: Vec3,
+    normal: Option<Vec3>,
+    suns: &[Beam],
+    sky: &Sky,
+    casting: Casting,
+    number: u64,
+) -> Exposure {
     let mut exposure = Exposure::none(Status::Dark);
     let turn = sequence::offset(casting.seed, BEAM_OFFSETS + number)[0];
-    let beam = beam_at(rays, from_m, point.normal, suns, casting.sun_rays, turn);
+    let beam = beam_at(rays, from_m, normal, suns, casting.sun_rays, turn);
     (exposure.beam_kwh_m2, exposure.sun_h) = (beam.energy_kwh_m2, beam.sun_h);
 
     // One sequence over the sky, dealt out to the blocks in turn: what the sky brings, and how much of it is seen.
     let each = casting.sky_rays.div_ceil(BLOCKS).max(1);
-    let offset = sequence::offset(casting.seed, OFFSETS + number);
     let mut blocks = [[0.0; 2]; BLOCKS as usize];
-    for index in 0..each * BLOCKS {
-        let square = sequence::square(index, offset);
-        let direction = match point.normal {
-            Some(normal) => sequence::cosine_about(normal, square),
-            None => sequence::on_sphere([square[0] / 2.0, square[1]]),
-        };
+    for (index, direction) in sky_directions(normal, casting, number).enumerate() {
         if direction.z > 0.0 {
             let passes = f64::from(rays.from_afar(from_m, direction));
-            let block = &mut blocks[(index % BLOCKS) as usize];
+            let block = &mut blocks[index % BLOCKS as usize];
             block[0] += passes * sky.radiance_kwh_m2_sr(direction.as_dvec3());
             block[1] += passes;
         }
     }
     // By the density of the directions: cos / pi, or 1 / (2 pi) over the upper half.
-    let solid_angle = if point.normal.is_some() { PI } else { 2.0 * PI };
+    let solid_angle = if normal.is_some() { PI } else { 2.0 * PI };
     let blocks = blocks.map(|[energy, seen]| [solid_angle * energy / f64::from(each), seen / f64::from(each)]);
     let mean = |part: usize| blocks.iter().map(|block| block[part]).sum::<f64>() / f64::from(BLOCKS);
     (exposure.sky_kwh_m2, exposure.svf) = (mean(0), mean(1));
@@ -143,12 +192,38 @@ fn at_point(rays: &Rays, point: &Point, suns: &[Beam], sky: &Sky, casting: Casti
     exposure
 }
 
-/// Whether most of what is seen from a point are backs of surfaces.
-fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
-    let looks =
-        (0..LOOKS).filter_map(|look| rays.closest(from_m, sequence::spiral(look, LOOKS, [0.37, 0.71]), f32::INFINITY));
-    let (backs, fronts) =
-        looks.fold((0, 0), |(backs, fronts), hit| if hit.front { (backs, fronts + 1) } else { (backs + 1, fronts) });
+/// The directions in which a point of that number looks for the sky; those below the horizon are not asked.
+pub(super) fn sky_directions(normal: Option<Vec3>, casting: Casting, number: u64) -> impl Iterator<Item = Vec3> {
+    let offset = sequence::offset(casting.seed, OFFSETS + number);
+    (0..casting.sky_rays.div_ceil(BLOCKS).max(1) * BLOCKS).map(move |index| {
+        let square = sequence::square(index, offset);
+        match normal {
+            Some(normal) => sequence::cosine_about(normal, square),
+            None => sequence::on_sphere([square[0] / 2.0, square[1]]),
+        }
+    })
+}
+
+/// The directions in which a point looks for the backs of surfaces: the same for all.
+pub(super) fn looks() -> impl Iterator<Item = Vec3> {
+    (0..LOOKS).map(|look| sequence::spiral(look, LOOKS, [0.37, 0.71]))
+}
+
+/// Whether a point is inside matter: most of what is seen from it are backs of surfaces; or, under the ground as a sheet, no
+/// sky is seen and more backs than fronts. Glazing before the sky counts as sky.
+pub(super) fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
+    let (mut backs, mut fronts, mut sky) = (0, 0, 0);
+    for look in looks() {
+        if look.z > 0.0 && rays.from_afar(from_m, look) > 0.0 {
+            sky += 1;
+            continue;
+        }
+        match rays.closest(from_m, look, f32::INFINITY) {
+            Some(hit) if hit.front => fronts += 1,
+            Some(_) => backs += 1,
+            None => {}
+        }
+    }
     // A sheet over open ground shows its back to those who stand under it, and the sky beside it.
-    backs > fronts && backs * 2 > LOOKS
+    backs > fronts && (backs * 2 > LOOKS || sky == 0)
 }

@@ -6,8 +6,14 @@
 //! [`reflect`] through the skeleton; without it `reflected` is 0.
 
 pub mod beams;
+pub mod camera;
 pub mod cast;
+mod quantity;
 pub mod reflect;
+pub mod scales;
+pub mod surface;
+
+pub use quantity::Quantity;
 
 use crate::light::Status;
 use crate::scene::Sensor;

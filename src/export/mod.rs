@@ -10,6 +10,8 @@ pub mod exposure;
 pub mod exposures;
 pub mod field;
 pub mod graphml;
+#[cfg(feature = "cli")]
+mod legend;
 pub mod plan;
 pub mod ply;
 #[cfg(feature = "cli")]

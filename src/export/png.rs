@@ -40,6 +40,15 @@ pub fn png(svg: &str, scale: f32, under: impl FnOnce(&mut tiny_skia::Pixmap)) ->
     Ok(Picture { bytes, has_text })
 }
 
+/// Colours one pixel, column and row from the upper left corner; nothing beyond the sheet.
+pub fn dot(sheet: &mut tiny_skia::Pixmap, [x, y]: [usize; 2], [red, green, blue]: [u8; 3]) {
+    let width = sheet.width() as usize;
+    let colour = tiny_skia::PremultipliedColorU8::from_rgba(red, green, blue, u8::MAX);
+    if let (Some(pixel), Some(colour)) = (sheet.pixels_mut().get_mut(y * width + x).filter(|_| x < width), colour) {
+        *pixel = colour;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

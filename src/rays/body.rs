@@ -11,6 +11,9 @@ use obvhs::ray::Ray;
 /// in metres would let rays that start 0.1 mm before a wall through it.
 pub(super) const UNITS_PER_M: f32 = 1_048_576.0;
 
+/// A distance is in doubt within 16 roundings of what it is summed up from.
+const IN_DOUBT: f32 = 16.0 / 16_777_216.0;
+
 /// What a ray can meet.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Body {
@@ -133,8 +136,26 @@ impl Shear {
             return f32::INFINITY;
         }
         let area = u + v + w;
-        let distance_m = (u * a.z + v * b.z + w * c.z) / area;
-        if area != 0.0 && distance_m > 0.0 { distance_m } else { f32::INFINITY }
+        let moment = u * a.z + v * b.z + w * c.z;
+        if area == 0.0 {
+            return f32::INFINITY;
+        }
+        // Where the triangle is a long sliver, rounding may outweigh the distance, and the ground shades itself.
+        let size = |axis: usize| [a, b, c].into_iter().map(|corner| corner[axis].abs()).fold(0.0, f32::max);
+        let (aside_m, along_m) = (size(0).max(size(1)), size(2));
+        let distance_m = if moment.abs() < IN_DOUBT * aside_m * (aside_m + along_m) * along_m {
+            self.distance_to_plane_m(corners_m)
+        } else {
+            moment / area
+        };
+        if distance_m > 0.0 { distance_m } else { f32::INFINITY }
+    }
+
+    /// In f64, in which differences and products of coordinates are exact or nearly so; not a number for edge-on planes.
+    fn distance_to_plane_m(&self, corners_m: [Vec3; 3]) -> f32 {
+        let [a, b, c] = corners_m.map(|corner_m| corner_m.as_dvec3() - self.origin_m.as_dvec3());
+        let normal = (b - a).cross(c - a);
+        (normal.dot(a) / normal.dot(self.direction.as_dvec3())) as f32
     }
 
     /// The nearer crossing in front of the origin; from inside, the far one.

@@ -48,13 +48,15 @@ mod tests {
     use jiff::civil::date;
 
     fn outdoors() -> Outdoors {
-        let site = Site { latitude_deg: Some(42.0), longitude_deg: Some(0.0), utc_offset_h: Some(0.0), ..Site::default() };
+        let site =
+            Site { latitude_deg: Some(42.0), longitude_deg: Some(0.0), utc_offset_h: Some(0.0), ..Site::default() };
         Outdoors::of(&site, None).unwrap()
     }
 
     #[test]
     fn noon_of_the_solstice_is_bright_and_midnight_has_no_step() {
-        let at = |hour, minute| steps_at(&outdoors(), date(2025, 6, 21).at(hour, minute, 0, 0), &Cancel::new()).unwrap();
+        let at =
+            |hour, minute| steps_at(&outdoors(), date(2025, 6, 21).at(hour, minute, 0, 0), &Cancel::new()).unwrap();
         let noon = at(12, 2);
         assert_eq!(noon.steps.len(), 1);
         let step = noon.steps[0];

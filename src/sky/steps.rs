@@ -159,6 +159,8 @@ pub fn of_weather(place: &Place, weather: &Weather, period: &Period, cancel: &Ca
     }
     if hours.is_empty() {
         found.warnings.push("the weather has no hours in the period".into());
+    } else if found.steps.is_empty() {
+        found.warnings.push("the weather has no light in the period: sun and sky bring nothing".into());
     }
     Ok(found)
 }
@@ -190,7 +192,11 @@ pub fn of_clear_sky(
         (step.dni_w_m2, step.dhi_w_m2) = (dni_w_m2, dhi_w_m2);
         cancel.check()
     })?;
-    Ok(Steps { steps: found, ..Steps::default() })
+    let mut warnings = Vec::new();
+    if found.is_empty() {
+        warnings.push("the sun does not rise in the period: sun and sky bring nothing".into());
+    }
+    Ok(Steps { steps: found, warnings, ..Steps::default() })
 }
 
 /// When the sun is up on each date, hours since midnight.

@@ -58,3 +58,12 @@ mod daylight;
 
 /// What surfaces reflect of sun and sky.
 mod reflected;
+
+/// Exposure by latitude and turbidity, as physics and the paper have it.
+mod exposure_trends;
+
+/// Exposure of odd scenes and places: right, or refused with a reason.
+mod exposure_robust;
+
+/// Real cities against Radiance.
+mod cities;

@@ -219,7 +219,10 @@ fn black_walls_reflect_exactly_nothing() {
 fn no_light_comes_into_a_sealed_room() {
     let sealed = room(0.8, None).quad(0, [2.0, 0.0, 1.0], [0.0, 0.0, 1.2], [2.0, 0.0, 0.0]);
     let (found, _) = daylit(&sealed.0, 0.1, &map(SkyModel::Perez), &Quality::COARSE);
-    assert!(found.iter().all(|exposure| exposure.total_kwh_m2() == 0.0 && exposure.status == Status::Dark), "{found:?}");
+    assert!(
+        found.iter().all(|exposure| exposure.total_kwh_m2() == 0.0 && exposure.status == Status::Dark),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -281,7 +284,8 @@ impl<'a> Walker<'a> {
             let normal = point.normal.unwrap();
             let mut from_m = point.position_m + normal * self.rays.epsilon_m();
             let (mut facing, mut share, mut found, mut step) = (normal, 1.0, 0.0, 0);
-            let mut direction = sequence::cosine_about(facing, sequence::square(path as u32, sequence::offset(seed, !0)));
+            let mut direction =
+                sequence::cosine_about(facing, sequence::square(path as u32, sequence::offset(seed, !0)));
             for bounce in 0..bounces {
                 if bounce > 0 {
                     direction = sequence::cosine_about(facing, random(step));
@@ -422,8 +426,7 @@ fn an_opening_passes_what_falls_on_it_and_diffusion_carries_it() {
         let points = points(&built.0.sensors);
         let straight = cast(&model.rays, &points, &sky, 0.0, CASTING, &Quiet, &Cancel::new()).unwrap();
         let asked = (&points[..], &straight[..]);
-        let carried =
-            by_heuristic(Method::Diffusion, model, asked, &light, CASTING, &Quiet, &Cancel::new()).unwrap();
+        let carried = by_heuristic(Method::Diffusion, model, asked, &light, CASTING, &Quiet, &Cancel::new()).unwrap();
         let (gathered, _) = daylit(&built.0, 0.1, &sky, &Quality::MEDIUM);
         // The second sensor is deep in the room, the last in the open.
         let factor = carried[1].all_kwh_m2() / gathered[1].reflected_kwh_m2;
@@ -451,8 +454,7 @@ fn daylight_agrees_with_radiance() {
         ("office", 0.2, "exposure_chicago_14_bounces", 1.08),
     ] {
         let scene = scene_of(&format!("outdoor/{name}"));
-        let table =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/outdoor/{name}/{table}.csv"));
+        let table = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/outdoor/{name}/{table}.csv"));
         let reference = reference(&table);
         let (found, _) = daylit(&scene, voxel_m, &map, &Quality::MEDIUM);
         let pairs = || scene.sensors.iter().zip(&found).map(|(sensor, found)| (found, reference[&sensor.id]));
@@ -493,7 +495,8 @@ fn the_command_tells_each_sensor_and_what_was_left_out() {
     }
     let sensors = told["sensors"].as_array().unwrap();
     assert_eq!(sensors.len(), 55);
-    for key in ["id", "beam", "sky", "reflected", "total", "svf", "status", "error", "sun_h", "lux", "daylight_factor"] {
+    for key in ["id", "beam", "sky", "reflected", "total", "svf", "status", "error", "sun_h", "lux", "daylight_factor"]
+    {
         assert!(sensors.iter().all(|sensor| !sensor[key].is_null()), "{key}");
     }
     let of = |id: &str, key: &str| sensors.iter().find(|row| row["id"] == id).unwrap()[key].as_f64().unwrap();
@@ -504,7 +507,8 @@ fn the_command_tells_each_sensor_and_what_was_left_out() {
 
     // A moment, by a preview; at night there is nothing.
     let at = |time: &str, method: &str| {
-        let arguments = ["daylight", scene, "--voxel", "0.2", "--sky-rays", "64", "--date", "2025-06-21", "--time", time];
+        let arguments =
+            ["daylight", scene, "--voxel", "0.2", "--sky-rays", "64", "--date", "2025-06-21", "--time", time];
         let output = run(&[&arguments[..], &["--method", method]].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
         (text(&output.stdout), text(&output.stderr))

@@ -29,7 +29,6 @@ use crate::sky::map::{ExposureMap, MapSettings};
 use crate::sky::moment::steps_at;
 use crate::sky::site::Outdoors;
 use crate::sky::steps::Steps;
-use crate::sky::weather::Weather;
 use crate::voxel::closed;
 use anyhow::{Context, Result};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -74,8 +73,7 @@ pub struct DaylightArgs {
 
 /// A method by its name.
 fn method() -> impl TypedValueParser<Value = Method> {
-    PossibleValuesParser::new(METHODS.map(Method::name))
-        .try_map(|name| Method::from_name(&name).ok_or("not a method"))
+    PossibleValuesParser::new(METHODS.map(Method::name)).try_map(|name| Method::from_name(&name).ok_or("not a method"))
 }
 
 /// Runs the command.
@@ -87,7 +85,7 @@ pub fn run(args: &DaylightArgs, cancel: &Cancel) -> Result<()> {
     let mut folder = args.output.as_deref().map(Folder::new).transpose()?;
     start_threads(args.flags.threads.map(usize::from))?;
     let mut scene = Scene::load(&args.scene, &stages, cancel)?;
-    let outdoors = outdoors(args, &mut scene, &stages, cancel)?;
+    let outdoors = args.site.outdoors(&mut scene, &args.scene, &stages, cancel)?;
     let plan = Plan::new(&args.flags, None, Some(args.method), Settings::default(), &scene.model);
     let rays = Arc::new(Rays::new(&scene));
 
@@ -140,18 +138,6 @@ pub fn run(args: &DaylightArgs, cancel: &Cancel) -> Result<()> {
         folder.list();
     }
     if args.flags.json { say(&format!("{json}\n")) } else { say(&text(&report)) }
-}
-
-/// Where the scene stands, its weather read.
-fn outdoors(args: &DaylightArgs, scene: &mut Scene, stages: &Stages, cancel: &Cancel) -> Result<Outdoors> {
-    let site = args.site.over(scene.site.take().unwrap_or_default());
-    let weather = site.weather.as_deref().map(|path| Weather::load(path, stages, cancel)).transpose()?;
-    if let Some(weather) = &weather {
-        scene.warnings.extend(weather.warnings.iter().cloned());
-    }
-    let mut outdoors = Outdoors::of(&site, weather).with_context(|| args.scene.display().to_string())?;
-    outdoors.model = args.site.model.unwrap_or(outdoors.model);
-    Ok(outdoors)
 }
 
 /// The steps of the period, or of a moment.
@@ -218,9 +204,7 @@ fn reflected(
     let &Asked { method, points, exposures, light, casting } = asked;
     Ok(match (model, method) {
         (None, _) => by_nothing(rays, points, light, casting, cancel)?,
-        (Some(model), Method::Network) => {
-            by_network(&model, points, light, &Quality::MEDIUM, casting, stages, cancel)?
-        }
+        (Some(model), Method::Network) => by_network(&model, points, light, &Quality::MEDIUM, casting, stages, cancel)?,
         (Some(model), _) => by_heuristic(method, model, (points, exposures), light, casting, stages, cancel)?,
     })
 }

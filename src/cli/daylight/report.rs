@@ -96,19 +96,7 @@ impl Found<'_> {
 
 /// The report for a reader.
 pub fn text(report: &Report) -> String {
-    let head = [
-        "sensor",
-        "beam",
-        "sky",
-        "reflected",
-        "total",
-        "+-",
-        "svf",
-        "sun, h",
-        "lux",
-        "factor, %",
-        "status",
-    ];
+    let head = ["sensor", "beam", "sky", "reflected", "total", "+-", "svf", "sun, h", "lux", "factor, %", "status"];
     let mut table = Table::new(head);
     // Of a moment there are hundreds of watts, not hundreds of kilowatt-hours.
     let figures = if report.moment.is_some() { 3 } else { 1 };

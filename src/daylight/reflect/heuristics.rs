@@ -150,9 +150,7 @@ pub fn by_heuristic(
     for column in 0..COLUMNS {
         light_with(&mut model, &openings, column);
         let field = estimate(&model, &probes, &settings, progress, cancel)?;
-        for (((found, exposure), probe), reading) in
-            found.iter_mut().zip(exposures).zip(&probes).zip(&field.readings)
-        {
+        for (((found, exposure), probe), reading) in found.iter_mut().zip(exposures).zip(&probes).zip(&field.readings) {
             let cell = probe.place.ok().and_then(|node| model.skeleton.graph.node_weight(node)).map(|node| node.cell);
             if cell.is_none_or(|cell| is_open(&open, cell)) {
                 continue;

@@ -64,8 +64,7 @@ impl Falling<'_> {
         let rows: Vec<[[f64; COLUMNS]; 2]> =
             grounds.patches.list.par_iter().enumerate().map(on_patch).collect::<Result<_, Cancelled>>()?;
         let column = |part: usize, column: usize| rows.iter().map(|row| row[part][column]).collect();
-        let landing =
-            |number| Landing { flux_w: column(0, number), reflected_w: column(1, number), lost_w: 0.0 };
+        let landing = |number| Landing { flux_w: column(0, number), reflected_w: column(1, number), lost_w: 0.0 };
         Ok((0..COLUMNS).map(landing).collect())
     }
 

@@ -13,7 +13,7 @@ pub mod landing;
 pub mod openings;
 pub mod skylight;
 
-use super::cast::Casting;
+use super::cast::{Casting, stands_at};
 use super::{Exposure, Point};
 use crate::flow::network::gather::{Gathered, gathered, necks_of, sights};
 use crate::flow::network::patches::Start;
@@ -24,10 +24,9 @@ use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Settings, Status};
 use crate::model::Model;
 use crate::rays::Rays;
-use glam::Vec3;
 use landing::Falling;
-use rayon::prelude::*;
 use openings::is_open;
+use rayon::prelude::*;
 use skylight::{Asked, Asking, COLUMNS, Skylight};
 
 /// Offsets of the sensors' sequences start here.
@@ -115,7 +114,7 @@ fn reflected(
     let offset = sequence::offset(casting.seed, SENSOR_OFFSETS + number as u64);
     let grounds = &network.grounds;
     let model = grounds.model;
-    let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
+    let from_m = stands_at(&model.rays, point);
     let cell = model.place(point.position_m, point.normal).ok();
     let cell = cell.and_then(|node| model.skeleton.graph.node_weight(node)).map_or(u32::MAX, |node| node.cell);
     let sights = sights(network, &rays, from_m, point.normal, cell, offset);
@@ -164,7 +163,7 @@ fn straight(
     casting: Casting,
     number: usize,
 ) -> Reflected {
-    let from_m = point.position_m + point.normal.unwrap_or(Vec3::ZERO) * rays.epsilon_m();
+    let from_m = stands_at(rays, point);
     let offset = sequence::offset(casting.seed, SENSOR_OFFSETS + number as u64);
     let asked = Asked { from_m, normal: point.normal, necks, offset };
     let asking = Asking { suns: 0, sky_rays: casting.sky_rays, neck_rays: casting.sky_rays / NECK_SHARE };

@@ -1,8 +1,8 @@
 //! What stands about painted exposure maps: titles, axes and the legend of the colours, as SVG.
 
 use super::picture::{Panel, Range};
+use crate::export::legend;
 use crate::export::plan::escaped;
-use crate::export::scale::{INFERNO, colour};
 use std::fmt::{Arguments, Write};
 
 /// Room left of, above and below each map, and right of all for the legend.
@@ -13,9 +13,6 @@ const LEGEND: usize = 120;
 
 /// Width from which a map has room for finer axes and longer words.
 const WIDE_PX: usize = 640;
-
-/// Steps in which the legend shows the colours.
-const STEPS: usize = 64;
 
 /// Where the maps of a picture lie, pixels.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +69,7 @@ pub(super) fn frame(sheet: &Sheet, panels: &[Panel], range: Range) -> String {
     put(format_args!(
         r##"<text transform="translate(16 {up}) rotate(-90)" text-anchor="middle" fill="#555">elevation</text>"##
     ));
-    legend(&mut put, right + 22, [ABOVE, bottom], range);
+    decades(&mut put, right + 22, [ABOVE, bottom], range);
     svg + "</svg>"
 }
 
@@ -117,26 +114,11 @@ fn axes(put: &mut dyn FnMut(Arguments), sheet: &Sheet, number: usize) {
     }
 }
 
-/// The colours in small steps, and a mark at each whole decade.
-fn legend(put: &mut dyn FnMut(Arguments), bar: usize, [top, bottom]: [usize; 2], range: Range) {
-    let high = (bottom - top) as f32;
-    let height = |part: f32| bottom as f32 - high * part;
-    for step in 0..STEPS {
-        let [red, green, blue] = colour(&INFERNO, (step as f64 + 0.5) / STEPS as f64);
-        put(format_args!(
-            r#"<rect x="{bar}" y="{}" width="16" height="{}" fill="rgb({red},{green},{blue})"/>"#,
-            height((step + 1) as f32 / STEPS as f32),
-            high / STEPS as f32 + 0.5
-        ));
-    }
-    let Range { brightest, decades: span } = range;
-    let lowest = brightest.log10() - span;
-    let decades = (lowest.ceil() as i32..=brightest.log10().floor() as i32).filter(|_| brightest > 0.0);
-    for decade in decades {
-        let y = height(((f64::from(decade) - lowest) / span) as f32);
-        put(format_args!(r##"<path d="M{} {y}h5" stroke="#444"/>"##, bar + 16));
-        let value = 10_f64.powi(decade);
-        put(format_args!(r#"<text x="{}" y="{}">{value}</text>"#, bar + 24, y + 5.0));
-    }
-    put(format_args!(r##"<text x="{}" y="{}" fill="#555">kWh/m²/sr</text>"##, bar - 8, top - 12));
+/// The colours, and a mark at each whole decade.
+fn decades(put: &mut dyn FnMut(Arguments), bar: usize, span: [usize; 2], range: Range) {
+    let Range { brightest, decades } = range;
+    let lowest = brightest.log10() - decades;
+    let marks = (lowest.ceil() as i32..=brightest.log10().floor() as i32).filter(|_| brightest > 0.0);
+    let mark = |decade: i32| ((f64::from(decade) - lowest) / decades, 10_f64.powi(decade).to_string());
+    legend::bar(put, bar, span, &marks.map(mark).collect::<Vec<_>>(), "kWh/m²/sr");
 }

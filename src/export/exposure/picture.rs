@@ -2,7 +2,7 @@
 //! maps of the picture share.
 
 use super::frame::{Sheet, frame};
-use crate::export::png::{Picture, png};
+use crate::export::png::{Picture, dot, png};
 use crate::export::scale::{INFERNO, colour};
 use crate::sky::map::ExposureMap;
 use resvg::tiny_skia;
@@ -89,7 +89,6 @@ fn paint(
 ) {
     let [wide, high] = sheet.map_px;
     let [left, top] = sheet.corner(number);
-    let sheet_width = pixels.width() as usize;
     let covered = |pixel: usize, pixels: usize, texels: usize| {
         let from = pixel * texels / pixels;
         from..((pixel + 1) * texels).div_ceil(pixels).clamp(from + 1, texels)
@@ -100,13 +99,7 @@ fn paint(
             let texels =
                 within.clone().flat_map(|row| covered(x, wide, columns).map(move |column| row * columns + column));
             let value = texels.map(|texel| radiance[texel]).fold(0.0, f64::max);
-            let [red, green, blue] = colour(&INFERNO, range.place(value));
-            let at = (y + top) * sheet_width + x + left;
-            if let (Some(pixel), Some(colour)) =
-                (pixels.pixels_mut().get_mut(at), tiny_skia::PremultipliedColorU8::from_rgba(red, green, blue, 255))
-            {
-                *pixel = colour;
-            }
+            dot(pixels, [x + left, y + top], colour(&INFERNO, range.place(value)));
         }
     }
 }

@@ -115,7 +115,12 @@ impl Patches {
         let point_m2 = model.walls.area_m2() / f64::from(tried);
 
         found.sort_by_key(|(kind, _)| *kind);
-        let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count], has_crevices: false };
+        let mut patches = Self {
+            list: Vec::new(),
+            starts: Vec::new(),
+            of_kind: vec![NONE; KINDS * zones.count],
+            has_crevices: false,
+        };
         for side in found.chunk_by(|a, b| a.0 == b.0) {
             patches.add(side, point_m2, lines);
         }

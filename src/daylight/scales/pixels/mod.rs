@@ -1,0 +1,278 @@
+//! What does every pixel of a view receive, at two scales, many times a second?
+//!
+//! The large scale is what a point sees of the map of heights, as for any point ([`super::expose`]), but by taps: for each of a
+//! few turns the places to look at are fixed steps in the map's own rows, told as offsets of memory, so that a tap is a load,
+//! a product and a comparison. Neighbours are turned differently, four by four, and may be averaged with those that lie on
+//! the same surface ([`smooth`]). The fine scale is horizon-based visibility in the camera's own buffers ([`fine`]): what the map's
+//! texels are too coarse for, balconies, sills, porches.
+//!
+//! The two are combined as in the paper, by weighting, or by what it names as better, by intersecting what is visible.
+//!
+//! Limits: [`super::sight`]'s opening angle is here by taps too; peeled depths are not, their bands take too long.
+
+pub mod fine;
+pub mod smooth;
+pub mod taps;
+
+use super::sight::{each_open, sine_of_slope};
+use super::sums::{ROWS, SkySums};
+use super::{before_plane, turn_of};
+use crate::daylight::camera::Buffers;
+use crate::job::{Cancel, Cancelled};
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use std::f32::consts::PI;
+use taps::{JITTERS, Taps};
+
+/// Neighbours that are turned differently, each way.
+pub const TILE: usize = 4;
+
+/// Most directions of a pixel.
+pub const MOST_DIRECTIONS: usize = 32;
+
+/// How the two scales are combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Combination {
+    /// The large scale alone.
+    Large,
+    /// Exposure by the large scale, weighted by the fine visibility.
+    Weighted,
+    /// The sky that is visible at both scales.
+    Intersected,
+}
+
+/// How a view is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Samples of the large scale along each direction; how many directions, [`SkySums`] says.
+    pub samples: usize,
+    /// How far they go, metres; `None` for as far as the map.
+    pub reach_m: Option<f32>,
+    /// Whether the sky is seen beneath overhangs up to the opening angle.
+    pub opening: bool,
+    /// How the scales are combined.
+    pub combination: Combination,
+    /// Samples of the fine scale along each direction.
+    pub fine_samples: usize,
+    /// How far the fine scale reaches, metres.
+    pub fine_reach_m: f32,
+    /// Whether neighbours on one surface are averaged.
+    pub smooth: bool,
+}
+
+/// What the pixels of a view receive, rows from the top; 0 where nothing is hit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Seen {
+    /// From sun and sky, kWh/m2.
+    pub total_kwh_m2: Vec<f32>,
+    /// Sky view factor.
+    pub svf: Vec<f32>,
+}
+
+/// A view's surfaces in the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surfaces {
+    /// Width and height of the view, pixels.
+    pub size: [usize; 2],
+    /// Places, metres; not a number where nothing is hit.
+    pub positions_m: [Vec<f32>; 3],
+    /// Unit normals that face the camera.
+    pub normals: [Vec<f32>; 3],
+    /// How wide a pixel is at the picture's median depth, metres.
+    pub pixel_m: f32,
+}
+
+impl Surfaces {
+    /// The places and normals of a camera's buffers.
+    pub fn new(buffers: &Buffers) -> Self {
+        let count = buffers.depth_m.len();
+        let points: Vec<(Vec3, Vec3)> = (0..count)
+            .into_par_iter()
+            .map(|pixel| match buffers.point(pixel) {
+                Some(point) => (point.position_m, point.normal.unwrap_or(Vec3::ZERO)),
+                None => (Vec3::NAN, Vec3::ZERO),
+            })
+            .collect();
+        let part = |axis: usize, of: fn(&(Vec3, Vec3)) -> Vec3| points.iter().map(|point| of(point)[axis]).collect();
+        let mut depths_m: Vec<f32> = buffers.depth_m.iter().copied().filter(|depth_m| depth_m.is_finite()).collect();
+        let middle = depths_m.len() / 2;
+        let median_m =
+            if depths_m.is_empty() { 1.0 } else { *depths_m.select_nth_unstable_by(middle, f32::total_cmp).1 };
+        Self {
+            size: buffers.camera.size,
+            pixel_m: median_m / buffers.camera.focal_px(),
+            positions_m: std::array::from_fn(|axis| part(axis, |point| point.0)),
+            normals: std::array::from_fn(|axis| part(axis, |point| point.1)),
+        }
+    }
+
+    fn position_m(&self, pixel: usize) -> Vec3 {
+        Vec3::from_array(std::array::from_fn(|axis| self.positions_m[axis][pixel]))
+    }
+
+    fn normal(&self, pixel: usize) -> Vec3 {
+        Vec3::from_array(std::array::from_fn(|axis| self.normals[axis][pixel]))
+    }
+}
+
+/// The sums of a sky as pixels read them: sun and sky together.
+#[derive(Debug, Clone)]
+pub struct PixelSums {
+    directions: usize,
+    /// For each sector, turns of a direction in a row, the energy times direction above each row, kWh/m2.
+    above: Vec<[f32; 4]>,
+    /// The cosine-weighted solid angle above each row for a level plane and for an upright one that faces it, sr.
+    level_upright_sr: Vec<[f32; 2]>,
+    /// Unit vectors of each sector's middle.
+    along: Vec<Vec2>,
+}
+
+/// How many ways pixels are turned.
+pub const TURNS: usize = TILE * TILE;
+
+impl PixelSums {
+    /// From sums that have [`TURNS`] turns and at most [`MOST_DIRECTIONS`] directions; `None` for others.
+    pub fn new(sums: &SkySums) -> Option<Self> {
+        if sums.turns != TURNS || sums.directions > MOST_DIRECTIONS {
+            return None;
+        }
+        let sectors = || (0..sums.directions).flat_map(|direction| (0..TURNS).map(move |turn| (direction, turn)));
+        let at = |row: usize| row as f32 / ROWS as f32;
+        let above = sectors().flat_map(|(direction, turn)| {
+            (0..=ROWS).map(move |row| {
+                let piece = sums.above(direction, turn, at(row));
+                let [x, y, z] = std::array::from_fn(|axis| piece.sky_kwh_m2[axis] + piece.beam_kwh_m2[axis]);
+                [x, y, z, 0.0]
+            })
+        });
+        let of_plane = |row: usize| {
+            let piece = sums.above(0, 0, at(row));
+            [piece.level_sr, piece.upright_sr]
+        };
+        let along = |(direction, turn)| {
+            let (sine, cosine) = (sums.azimuth_rad(direction, turn) as f32).sin_cos();
+            Vec2::new(sine, cosine)
+        };
+        Some(Self {
+            directions: sums.directions,
+            above: above.collect(),
+            level_upright_sr: (0..=ROWS).map(of_plane).collect(),
+            along: sectors().map(along).collect(),
+        })
+    }
+
+    /// Energy times direction, and the solid angles of a level and an upright plane, between two sines of elevation.
+    #[inline]
+    fn between(&self, sector: usize, low: f32, high: f32) -> (Vec3, [f32; 2]) {
+        let (energy, plane) = self.above(sector, low);
+        if high >= 1.0 {
+            return (energy, plane);
+        }
+        let (other, other_plane) = self.above(sector, high);
+        (energy - other, [plane[0] - other_plane[0], plane[1] - other_plane[1]])
+    }
+
+    #[inline]
+    fn above(&self, sector: usize, sine: f32) -> (Vec3, [f32; 2]) {
+        let at = sine.clamp(0.0, 1.0) * ROWS as f32;
+        let row = (at as usize).min(ROWS - 1);
+        let part = at - row as f32;
+        let first = sector * (ROWS + 1) + row;
+        let (Some([a, b]), Some([c, d])) = (self.above.get(first..first + 2), self.level_upright_sr.get(row..row + 2))
+        else {
+            return (Vec3::ZERO, [0.0; 2]);
+        };
+        let mix = |a: f32, b: f32| a + part * (b - a);
+        (Vec3::new(mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2])), [mix(c[0], d[0]), mix(c[1], d[1])])
+    }
+}
+
+/// What each pixel receives. The same bits for any number of threads.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn see(
+    taps: &Taps,
+    sums: &PixelSums,
+    surfaces: &Surfaces,
+    look: &Look,
+    cancel: &Cancel,
+) -> Result<Seen, Cancelled> {
+    /// Rows between looks at whether to stop.
+    const ROWS_AT_ONCE: usize = 8;
+    let [width, height] = surfaces.size;
+    let mut seen = Seen { total_kwh_m2: vec![0.0; width * height], svf: vec![0.0; width * height] };
+    let steps = fine::Steps::new(surfaces, sums.directions, look);
+    let chunk = ROWS_AT_ONCE * width;
+    seen.total_kwh_m2.par_chunks_mut(chunk).zip(seen.svf.par_chunks_mut(chunk)).enumerate().try_for_each(
+        |(number, (totals, svfs))| {
+            cancel.check()?;
+            for (off, (total, svf)) in totals.iter_mut().zip(svfs).enumerate() {
+                let pixel = number * chunk + off;
+                if surfaces.positions_m[0][pixel].is_nan() {
+                    continue;
+                }
+                (*total, *svf) = match look.combination {
+                    Combination::Intersected => {
+                        at_pixel(taps, sums, surfaces, pixel, look, |turn| Some(steps.covered(surfaces, pixel, turn)))
+                    }
+                    _ => at_pixel(taps, sums, surfaces, pixel, look, |_| None),
+                };
+            }
+            Ok(())
+        },
+    )?;
+    if look.combination == Combination::Weighted {
+        let visible = steps.visible(surfaces, cancel)?;
+        for values in [&mut seen.total_kwh_m2, &mut seen.svf] {
+            values.iter_mut().zip(&visible).for_each(|(value, visible)| *value *= visible);
+        }
+    }
+    if look.smooth { Ok(smooth::smoothed(seen, surfaces)) } else { Ok(seen) }
+}
+
+/// The elevations that the fine scale covers in each direction, evenly by their sine.
+pub type Covered = [u64; MOST_DIRECTIONS];
+
+/// Exposure and sky view factor of one pixel; `covered` is asked for how the pixel is turned.
+#[inline]
+fn at_pixel(
+    taps: &Taps,
+    sums: &PixelSums,
+    surfaces: &Surfaces,
+    pixel: usize,
+    look: &Look,
+    covered: impl FnOnce(usize) -> Option<Covered>,
+) -> (f32, f32) {
+    let (column, row) = (pixel % surfaces.size[0], pixel / surfaces.size[0]);
+    let tile = column % TILE + TILE * (row % TILE);
+    let (position_m, normal) = (surfaces.position_m(pixel), surfaces.normal(pixel));
+    let turn = turn_of(sums.directions, TURNS, normal, SPREAD[tile] as f32 / TURNS as f32);
+    let place = taps.place(position_m, normal, look.opening);
+    let covered = covered(turn);
+    let (mut total, mut svf) = (0.0, 0.0);
+    for direction in 0..sums.directions {
+        let sector = direction * TURNS + turn;
+        let along = sums.along.get(sector).copied().unwrap_or(Vec2::X);
+        let Some([from, to]) = before_plane(Some(normal), along) else { continue };
+        let [low, high] = taps.horizon(&place, sector * JITTERS + tile / TILE);
+        let (low, high) = (sine_of_slope(low.max(from).max(0.0)), sine_of_slope(high.min(to)));
+        if low >= high {
+            continue;
+        }
+        let across = normal.truncate().dot(along);
+        let mut add = |low: f32, high: f32| {
+            let (energy, [level_sr, upright_sr]) = sums.between(sector, low, high);
+            total += normal.dot(energy).max(0.0);
+            svf += (normal.z * level_sr + across * upright_sr).max(0.0) / PI;
+        };
+        match &covered {
+            None => add(low, high),
+            Some(covered) => each_open(!covered[direction], low, high, |band| add(band.low, band.high)),
+        }
+    }
+    (total, svf)
+}
+
+/// The turns of the pixels of a tile: neighbours far from each other (Bayer's order).
+const SPREAD: [u8; TURNS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
