@@ -5,10 +5,11 @@
 
 use super::openings::is_open;
 use super::skylight::{Asked, Asking, COLUMNS, Skylight};
-use crate::flow::network::Grounds;
-use crate::flow::network::gather::necks_of;
+use crate::flow::network::gather::{Arriving, Place, necks_of};
 use crate::flow::network::landing::Landing;
 use crate::flow::network::patches::{Patch, Start};
+use crate::flow::network::walk::{End, walk};
+use crate::flow::network::{Grounds, Network};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled};
 use rayon::prelude::*;
@@ -68,19 +69,24 @@ impl Falling<'_> {
         Ok((0..COLUMNS).map(landing).collect())
     }
 
-    /// What lands at a place of a patch, kWh/m2, in the place of the patch's mean; as
-    /// [`Sharpen`](crate::flow::network::gather::Sharpen) has it.
-    pub fn sharpen(&self, grounds: &Grounds, patch: u32, at: &Start, all_kwh_m2: f64, landing_kwh_m2: &mut [f64]) {
-        let Some(patch) = grounds.patches.list.get(patch as usize) else { return };
-        if landing_kwh_m2.iter().all(|landing| *landing <= LEAST_SHARE * all_kwh_m2) {
-            return;
-        }
+    /// What arrives at a place of a patch in the stead of the patch's means, as
+    /// [`Sharpen`](crate::flow::network::gather::Sharpen) has it: what lands straight, and in the open, where a patch is as
+    /// large as a street is wide and a balcony is not, what is reflected by the patch that one more ray meets.
+    pub fn sharpen(&self, network: &Network, place: &Place, arriving: Arriving) {
+        let grounds = &network.grounds;
+        let Place { at, all_w_m2: all_kwh_m2, .. } = *place;
+        let Some(patch) = grounds.patches.list.get(place.patch as usize) else { return };
         // A number of its own for each place.
         let bits = at.position_m.to_array().map(|along| u64::from(along.to_bits()));
         let number = PLACE_OFFSETS ^ bits[0] ^ bits[1] << 16 ^ bits[2] << 31;
         let offset = sequence::offset(self.seed, number);
-        let brought = self.at(grounds, patch, at, AT_PLACE_OUTDOORS, AT_PLACE_INDOORS, offset);
-        landing_kwh_m2.copy_from_slice(&brought);
+        if arriving.landing_w_m2.iter().any(|landing| *landing > LEAST_SHARE * all_kwh_m2) {
+            let brought = self.at(grounds, patch, &at, AT_PLACE_OUTDOORS, AT_PLACE_INDOORS, offset);
+            arriving.landing_w_m2.copy_from_slice(&brought);
+        }
+        if is_open(self.open, grounds.zones.cell(patch.zone)) {
+            arriving.reflected_w_m2.copy_from_slice(&sent_to(network, &at, [offset[1], offset[0]]));
+        }
     }
 
     fn at(
@@ -102,4 +108,28 @@ impl Falling<'_> {
         let necks = necks_of(&grounds.portals, cell, from_m);
         self.light.at_point(rays, &Asked { necks: &necks, ..asked }, indoors)
     }
+}
+
+/// What the patches send that one ray from a place meets, kWh/m2: the place's irradiance by reflected light, without bias.
+fn sent_to(network: &Network, at: &Start, random: [f64; 2]) -> [f64; COLUMNS] {
+    let grounds = &network.grounds;
+    let direction = sequence::cosine_about(at.normal, random);
+    let from_m = at.position_m + at.normal * grounds.model.rays.epsilon_m();
+    let mut sums = [0.0; COLUMNS];
+    let Some(walk) = walk(grounds, from_m, direction) else { return sums };
+    let mut share = 1.0;
+    let mut add = |patch: u32, at: &Start| {
+        let area_m2 = grounds.patches.list[patch as usize].area_m2;
+        for (column, sum) in sums.iter_mut().enumerate() {
+            let lands_kwh_m2 = network.landings[column].flux_w[patch as usize] / area_m2;
+            let arrives_kwh_m2 = lands_kwh_m2 + network.reflected_w_m2[column][patch as usize];
+            *sum += share * f64::from(at.answer.reflects) * arrives_kwh_m2;
+        }
+        share *= f64::from(at.answer.passes);
+    };
+    walk.panes.iter().for_each(|pane| add(pane.sides[0], &pane.at));
+    if let End::Patch(patch) = walk.end {
+        add(patch, &walk.at);
+    }
+    sums
 }

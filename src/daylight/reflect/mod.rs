@@ -15,8 +15,7 @@ pub mod skylight;
 
 use super::cast::{Casting, stands_at};
 use super::{Exposure, Point};
-use crate::flow::network::gather::{Gathered, gathered, necks_of, sights};
-use crate::flow::network::patches::Start;
+use crate::flow::network::gather::{Arriving, Gathered, Place, gathered, necks_of, sights};
 use crate::flow::network::portals::Portal;
 use crate::flow::network::{Gather, Grounds, Network, Quality};
 use crate::flow::sequence;
@@ -118,8 +117,7 @@ fn reflected(
     let cell = model.place(point.position_m, point.normal).ok();
     let cell = cell.and_then(|node| model.skeleton.graph.node_weight(node)).map_or(u32::MAX, |node| node.cell);
     let sights = sights(network, &rays, from_m, point.normal, cell, offset);
-    let sharpen =
-        |patch: u32, at: &Start, all: f64, landing: &mut [f64]| falling.sharpen(grounds, patch, at, all, landing);
+    let sharpen = |place: &Place, arriving: Arriving| falling.sharpen(network, place, arriving);
     let begin = Gathered { columns_w_m2: vec![0.0; COLUMNS], ..Gathered::default() };
     let gathered = gathered(network, &sights, point.normal, &sharpen, LARGE_FROM_RAYS, begin);
     let column = |number: usize| gathered.columns_w_m2.get(number).copied().unwrap_or(0.0);

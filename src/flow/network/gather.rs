@@ -82,9 +82,28 @@ pub struct Gathered {
     pub error_w_m2: f64,
 }
 
-/// Tells what lands straight at a place of a large patch: given the patch's number, the place and the patch's irradiance by all
-/// light, W/m2, it may put what lands at the very place in the place of the patch's mean, column by column.
-pub type Sharpen<'a> = dyn Fn(u32, &Start, f64, &mut [f64]) + Sync + 'a;
+/// A place of a patch that a sensor sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The patch's number.
+    pub patch: u32,
+    /// Where on it.
+    pub at: Start,
+    /// The mean irradiance of the patch by all light, W/m2.
+    pub all_w_m2: f64,
+}
+
+/// What arrives there, W/m2.
+#[derive(Debug)]
+pub struct Arriving<'a> {
+    /// Straight, by column.
+    pub landing_w_m2: &'a mut [f64],
+    /// After reflections; by column, or all together where the network has it so.
+    pub reflected_w_m2: &'a mut [f64],
+}
+
+/// Puts what arrives at the very place in the stead of the patch's means, where that matters.
+pub type Sharpen<'a> = dyn Fn(&Place, Arriving) + Sync + 'a;
 
 fn at_probe(network: &Network, rays: &Gather, probe: &Probe, offset: [f64; 2]) -> (Reading, Vec<f64>) {
     let model = network.grounds.model;
@@ -96,8 +115,8 @@ fn at_probe(network: &Network, rays: &Gather, probe: &Probe, offset: [f64; 2]) -
     let (straight, row) = network.straight(probe, DIRECT_RAYS, offset);
     let cell = model.skeleton.graph.node_weight(node).map_or(u32::MAX, |node| node.cell);
     let sights = sights(network, rays, from_m, probe.normal, cell, offset);
-    let sharpen = |_: u32, at: &Start, all_w_m2: f64, landing_w_m2: &mut [f64]| {
-        for (emitter, landing_w_m2) in landing_w_m2.iter_mut().enumerate() {
+    let sharpen = |&Place { at, all_w_m2, .. }: &Place, arriving: Arriving| {
+        for (emitter, landing_w_m2) in arriving.landing_w_m2.iter_mut().enumerate() {
             if *landing_w_m2 > LEAST_SHARE * all_w_m2 {
                 let lifted_m = at.position_m + at.normal * model.rays.epsilon_m();
                 *landing_w_m2 = direct(model, lifted_m, Some(at.normal), emitter, 1, offset).value_w_m2;
@@ -130,36 +149,39 @@ pub fn gathered(
 
     let mut halves = [0.0; 2];
     let mut variants = [0.0; 3];
-    let mut landing_w_m2 = vec![0.0; columns];
+    let (mut landing_w_m2, mut reflected_w_m2) = (vec![0.0; columns], Vec::with_capacity(columns));
     for sight in sights.iter().filter(|sight| sight.at.answer.reflects > 0.0) {
         let patch = sight.patch as usize;
         let reflects = f64::from(sight.at.answer.reflects);
         let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
         let weight = reflects * sight.weight;
-        let reflected_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[patch]).sum();
+        reflected_w_m2.clear();
+        reflected_w_m2.extend(network.reflected_w_m2.iter().map(|column| column[patch]));
+        let of_patch_w_m2: f64 = reflected_w_m2.iter().sum();
         let area_m2 = network.grounds.patches.list[patch].area_m2;
         for (landing_w_m2, landing) in landing_w_m2.iter_mut().zip(&network.landings) {
             *landing_w_m2 = landing.flux_w[patch] / area_m2;
         }
         if rays_to(sight.patch) >= large_from_rays {
             let all_w_m2: f64 =
-                reflected_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;
-            sharpen(sight.patch, &sight.at, all_w_m2, &mut landing_w_m2);
+                of_patch_w_m2 + network.landings.iter().map(|landing| landing.flux_w[patch]).sum::<f64>() / area_m2;
+            let place = Place { patch: sight.patch, at: sight.at, all_w_m2 };
+            let arriving = Arriving { landing_w_m2: &mut landing_w_m2, reflected_w_m2: &mut reflected_w_m2 };
+            sharpen(&place, arriving);
         }
 
         let mut arriving_w_m2 = 0.0;
         for (column, landing_w_m2) in landing_w_m2.iter().enumerate() {
-            let reflected_w_m2 =
-                if network.reflected_w_m2.len() == columns { network.reflected_w_m2[column][patch] } else { 0.0 };
+            let reflected_w_m2 = if reflected_w_m2.len() == columns { reflected_w_m2[column] } else { 0.0 };
             row[column] += weight * cosine * (landing_w_m2 + reflected_w_m2);
             arriving_w_m2 += landing_w_m2;
         }
-        let radiosity_w_m2 = arriving_w_m2 + reflected_w_m2;
+        let radiosity_w_m2 = arriving_w_m2 + reflected_w_m2.iter().sum::<f64>();
         value_w_m2 += weight * cosine * radiosity_w_m2;
         flux_w_m2 += weight * radiosity_w_m2 * sight.direction.as_dvec3();
         halves[usize::from(sight.odd)] += 2.0 * weight * cosine * radiosity_w_m2;
         for (sum, variant) in variants.iter_mut().zip(&network.variants_w_m2) {
-            *sum += weight * cosine * (variant[patch] - reflected_w_m2);
+            *sum += weight * cosine * (variant[patch] - of_patch_w_m2);
         }
     }
     let noise = 0.5 * (halves[0] - halves[1]);
