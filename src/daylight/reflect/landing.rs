@@ -24,6 +24,9 @@ const INDOORS: Asking = Asking { suns: 64, sky_rays: 8, neck_rays: 8 };
 const AT_PLACE_OUTDOORS: Asking = Asking { suns: 4, sky_rays: 4, neck_rays: 0 };
 const AT_PLACE_INDOORS: Asking = Asking { suns: 16, sky_rays: 4, neck_rays: 2 };
 
+/// At the place that the next ray meets.
+const AT_NEXT_PLACE: Asking = Asking { suns: 2, sky_rays: 2, neck_rays: 0 };
+
 /// Light of less than this share of all at a patch is not asked for at places of it.
 const LEAST_SHARE: f64 = 0.02;
 
@@ -85,7 +88,7 @@ impl Falling<'_> {
             arriving.landing_w_m2.copy_from_slice(&brought);
         }
         if is_open(self.open, grounds.zones.cell(patch.zone)) {
-            arriving.reflected_w_m2.copy_from_slice(&sent_to(network, &at, [offset[1], offset[0]]));
+            arriving.reflected_w_m2.copy_from_slice(&self.sent_to(network, &at, [offset[1], offset[0]]));
         }
     }
 
@@ -108,28 +111,29 @@ impl Falling<'_> {
         let necks = necks_of(&grounds.portals, cell, from_m);
         self.light.at_point(rays, &Asked { necks: &necks, ..asked }, indoors)
     }
-}
 
-/// What the patches send that one ray from a place meets, kWh/m2: the place's irradiance by reflected light, without bias.
-fn sent_to(network: &Network, at: &Start, random: [f64; 2]) -> [f64; COLUMNS] {
-    let grounds = &network.grounds;
-    let direction = sequence::cosine_about(at.normal, random);
-    let from_m = at.position_m + at.normal * grounds.model.rays.epsilon_m();
-    let mut sums = [0.0; COLUMNS];
-    let Some(walk) = walk(grounds, from_m, direction) else { return sums };
-    let mut share = 1.0;
-    let mut add = |patch: u32, at: &Start| {
-        let area_m2 = grounds.patches.list[patch as usize].area_m2;
-        for (column, sum) in sums.iter_mut().enumerate() {
-            let lands_kwh_m2 = network.landings[column].flux_w[patch as usize] / area_m2;
-            let arrives_kwh_m2 = lands_kwh_m2 + network.reflected_w_m2[column][patch as usize];
-            *sum += share * f64::from(at.answer.reflects) * arrives_kwh_m2;
+    /// What the places send that one ray from a place meets, kWh/m2: the place's irradiance by reflected light.
+    fn sent_to(&self, network: &Network, at: &Start, random: [f64; 2]) -> [f64; COLUMNS] {
+        let grounds = &network.grounds;
+        let direction = sequence::cosine_about(at.normal, random);
+        let from_m = at.position_m + at.normal * grounds.model.rays.epsilon_m();
+        let mut sums = [0.0; COLUMNS];
+        let Some(walk) = walk(grounds, from_m, direction) else { return sums };
+        let mut share = 1.0;
+        let mut add = |number: u32, at: &Start| {
+            let patch = &grounds.patches.list[number as usize];
+            let offset = sequence::square(1, random);
+            let lands_kwh_m2 = self.at(grounds, patch, at, AT_NEXT_PLACE, AT_NEXT_PLACE, offset);
+            for (column, sum) in sums.iter_mut().enumerate() {
+                let arrives_kwh_m2 = lands_kwh_m2[column] + network.reflected_w_m2[column][number as usize];
+                *sum += share * f64::from(at.answer.reflects) * arrives_kwh_m2;
+            }
+            share *= f64::from(at.answer.passes);
+        };
+        walk.panes.iter().for_each(|pane| add(pane.sides[0], &pane.at));
+        if let End::Patch(patch) = walk.end {
+            add(patch, &walk.at);
         }
-        share *= f64::from(at.answer.passes);
-    };
-    walk.panes.iter().for_each(|pane| add(pane.sides[0], &pane.at));
-    if let End::Patch(patch) = walk.end {
-        add(patch, &walk.at);
+        sums
     }
-    sums
 }
