@@ -7,7 +7,7 @@
 //! of the mean, and mean absolute error of the sky view factor, against every sun and 65,536 directions by rays. Medians of five
 //! runs; what is made beforehand is timed apart.
 
-use lightvein::daylight::cast::{Casting, cast};
+use lightvein::daylight::cast::{Asked, Casting, cast};
 use lightvein::daylight::scales::sight::Overhangs;
 use lightvein::daylight::scales::sums::SkySums;
 use lightvein::daylight::scales::zenith::Zenith;
@@ -60,7 +60,9 @@ fn main() {
                 let turns = (128 / directions).max(1);
                 let (sums_s, sums) = timed(|| SkySums::new(&map, outdoors.north_rad, directions, turns));
                 let scan = Scan { samples, reach_m: None, overhangs, seed: 0 };
-                let at = |points: &[Point]| expose(&zenith, &sums, points, &scan, &Quiet, &Cancel::new()).unwrap();
+                let at = |points: &[Point]| {
+                    expose(&zenith, &sums, Asked::all(points), &scan, &Quiet, &Cancel::new()).unwrap()
+                };
                 let mut seconds: Vec<f64> = (0..RUNS).map(|_| timed(|| at(&many)).0).collect();
                 seconds.sort_by(f64::total_cmp);
                 let [rmse, svf] = off(&at(&own), &truth);

@@ -10,7 +10,7 @@
 use lightvein::daylight::camera::{Buffers, Camera, DEFAULT_FOV_RAD};
 use lightvein::daylight::cast::{Casting, cast};
 use lightvein::daylight::scales::pixels::taps::Taps;
-use lightvein::daylight::scales::pixels::{Combination, Look, PixelSums, Surfaces, TURNS, see};
+use lightvein::daylight::scales::pixels::{Combination, Look, Part, PixelSums, Surfaces, TURNS, see};
 use lightvein::daylight::scales::sums::SkySums;
 use lightvein::daylight::scales::zenith::Zenith;
 use lightvein::daylight::{Exposure, Point};
@@ -92,7 +92,7 @@ fn of_scene(name: &str, scene: &Scene, weather: Option<Weather>) {
                 let (made_s, (taps, sums)) = timed(|| {
                     let zenith = Zenith::new(scene, 512, false, quiet.1).unwrap();
                     let sums = SkySums::new(&map, outdoors.north_rad, directions, TURNS);
-                    (Taps::new(&zenith, &sums, &look), PixelSums::new(&sums).unwrap())
+                    (Taps::new(&zenith, &sums, &look), PixelSums::new(&sums, Part::All).unwrap())
                 });
                 let frame = || see(&taps, &sums, &surfaces, &look, quiet.1).unwrap();
                 let mut seconds: Vec<f64> = (0..RUNS).map(|_| timed(frame).0).collect();
@@ -100,9 +100,9 @@ fn of_scene(name: &str, scene: &Scene, weather: Option<Weather>) {
                 let seen = frame();
                 let count = truth.len() as f64;
                 let pairs = || checked.iter().zip(&truth);
-                let svf: f64 = pairs().map(|(&pixel, truth)| (f64::from(seen.svf[pixel]) - truth.svf).abs()).sum();
+                let svf: f64 = pairs().map(|(&pixel, truth)| (f64::from(seen[pixel].svf) - truth.svf).abs()).sum();
                 let square: f64 = pairs()
-                    .map(|(&pixel, truth)| (f64::from(seen.total_kwh_m2[pixel]) - truth.total_kwh_m2()).powi(2))
+                    .map(|(&pixel, truth)| (f64::from(seen[pixel].total_kwh_m2) - truth.total_kwh_m2()).powi(2))
                     .sum();
                 let mean = truth.iter().map(Exposure::total_kwh_m2).sum::<f64>() / count;
                 println!(

@@ -167,7 +167,7 @@ fn edge_m(text: &str) -> Result<f32, String> {
 }
 
 /// A factor above 1.
-fn factor(text: &str) -> Result<f64, String> {
+pub(super) fn factor(text: &str) -> Result<f64, String> {
     let factor: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if factor.is_finite() && factor > 1.0 { Ok(factor) } else { Err("a tolerance is a factor above 1".to_owned()) }
 }

@@ -30,9 +30,9 @@ const MOST_PX: usize = 10_000;
 /// Nearest that what is looked at may be, metres.
 const NEAREST_M: f64 = 1e-3;
 
-/// Farthest that a camera may stand, in lifts off surfaces ([`Rays::epsilon_m`]): 20 times the scene's largest coordinate, and
-/// at least 4 times that of a city. Beyond, rounding puts hits under the surfaces that they lie on.
-const FARTHEST_EPSILONS: f32 = 20.0 * 1e5;
+/// Farthest that a camera may stand, in lifts off surfaces ([`Rays::epsilon_m`]): 40 times a small scene's largest coordinate.
+/// Beyond, rounding puts hits farther under their surfaces than the lift.
+const FARTHEST_EPSILONS: f32 = 4e6;
 
 /// Sine of the angle to the vertical below which a camera looks straight up or down.
 const STRAIGHT: f64 = 1e-4;
@@ -141,8 +141,11 @@ impl Camera {
             half_m * DVec3::new(side(0), side(1), side(2))
         });
         let fitted = |axis: DVec3, tangent: f64| {
-            let edge = |side: f64| corners.clone().map(move |at_m| side * at_m.dot(axis) - tangent * at_m.dot(forward));
-            let [high, low] = [1.0, -1.0].map(|side| edge(side).fold(f64::NEG_INFINITY, f64::max));
+            let edge = |side: f64| {
+                let reach = |at_m: DVec3| side * at_m.dot(axis) - tangent * at_m.dot(forward);
+                corners.clone().map(reach).fold(f64::NEG_INFINITY, f64::max)
+            };
+            let [high, low] = [edge(1.0), edge(-1.0)];
             ((high - low) / 2.0, (high + low) / (2.0 * tangent))
         };
         let [wide, high] = aimed.tangents();
@@ -197,6 +200,13 @@ impl Camera {
         self.forward + x as f32 * self.right + y as f32 * self.up
     }
 
+    /// What is behind a pixel: its depth along the forward axis, metres, and its normal on the side that is seen.
+    pub fn look(&self, rays: &Rays, column: usize, row: usize) -> Option<(f32, Vec3)> {
+        let direction = self.ray(column, row);
+        let hit = rays.closest(self.from_m, direction, f32::INFINITY)?;
+        Some((hit.distance_m * direction.dot(self.forward), hit.facing()))
+    }
+
     /// Where in the picture a place is seen: columns and rows from the upper left corner (the middle of the first pixel is at
     /// 0.5, 0.5), and its depth along the forward axis, metres; `None` for places not before the camera.
     pub fn seen_at(&self, at_m: Vec3) -> Option<([f32; 2], f32)> {
@@ -248,10 +258,8 @@ impl Buffers {
         let rendered = rows.try_for_each(|(row, (depths_m, normals))| {
             cancel.check()?;
             for (column, (depth_m, normal)) in depths_m.iter_mut().zip(normals).enumerate() {
-                let direction = camera.ray(column, row);
-                if let Some(hit) = rays.closest(camera.from_m, direction, f32::INFINITY) {
-                    *depth_m = hit.distance_m * direction.dot(camera.forward);
-                    *normal = hit.facing();
+                if let Some((seen_m, facing)) = camera.look(rays, column, row) {
+                    (*depth_m, *normal) = (seen_m, facing);
                 }
             }
             progress.advance(1);
@@ -400,7 +408,7 @@ mod tests {
         let rays = Rays::new(&ground_and_wall(0.0));
         let far = Camera::new(Vec3::Z * 1e4, here, 0.5, [8, 8]).unwrap();
         assert!(
-            far.check(&rays).unwrap_err().to_string().contains("10000 m from the middle of the scene; beyond 200 m")
+            far.check(&rays).unwrap_err().to_string().contains("10000 m from the middle of the scene; beyond 400 m")
         );
         assert_eq!(Camera::new(Vec3::Z * 9.0, here, 0.5, [8, 8]).unwrap().check(&rays), Ok(()));
     }

@@ -10,7 +10,7 @@
 //! Limits: a sensor is held to be inside matter where most of what it sees are backs of surfaces, or no sky and more backs
 //! than fronts, so meshes must be closed or face outwards.
 
-use super::beams::{Beam, beam_at, in_order};
+use super::beams::{Suns, beam_at};
 use super::{Exposure, Point};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
@@ -105,7 +105,7 @@ pub fn cast_at(
     cancel: &Cancel,
 ) -> Result<Vec<Exposure>, Cancelled> {
     progress.begin("rays", asked.points.len() as u64);
-    let suns = in_order(map, north_rad);
+    let suns = Suns::new(map, north_rad);
     let sky = Sky { map, north_rad };
     let exposures: Result<Vec<Exposure>, Cancelled> = asked
         .points
@@ -157,7 +157,7 @@ fn at_point(
     rays: &Rays,
     from_m: Vec3,
     normal: Option<Vec3>,
-    suns: &[Beam],
+    suns: &Suns,
     sky: &Sky,
     casting: Casting,
     number: u64,

@@ -8,10 +8,13 @@
 pub mod beams;
 pub mod camera;
 pub mod cast;
+pub mod choose;
+pub mod dynamic;
 mod quantity;
 pub mod reflect;
 pub mod scales;
 pub mod surface;
+pub mod way;
 
 pub use quantity::Quantity;
 

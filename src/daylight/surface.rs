@@ -5,12 +5,13 @@
 //! corners run counter-clockwise. The other side is not asked.
 //!
 //! Vertices: the faces about a vertex are grouped into surfaces that bend by less than [`CREASE_RAD`] from face to face; each
-//! group is asked once, with the mean of its normals by area, so that a box has three values at a corner and a dome one. The
+//! group of one part of the scene is asked once, with the mean of its normals by area, so that a box has three values at a corner and a dome one. The
 //! point stands a little inside the group, not on the crease, where rays would start in the seam of two walls.
 
 use super::Point;
 use crate::job::{Cancel, Cancelled};
 use crate::scene::Mesh;
+use crate::scene::parts::{Change, Part, moved};
 use glam::{DVec3, Vec3};
 
 /// Patches that a scene is cut into where nobody says how large they are to be.
@@ -139,13 +140,68 @@ pub struct Corners {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Patches with the parts of their scene changed, and which of them are left: all but those of hidden parts. `change_of` has
+/// each triangle's change.
+pub fn patches_changed(patches: &[Patch], changes: &[Change], change_of: &[Option<u32>]) -> (Vec<u32>, Vec<Patch>) {
+    let changed = patches.iter().zip(0..).filter_map(|(patch, number)| {
+        let corners_m = place(patch.triangle, changes, change_of, patch.corners_m)?;
+        Some((number, Patch { corners_m, ..*patch }))
+    });
+    changed.unzip()
+}
+
+/// Where points of a triangle are after changes, metres; `None` for a hidden one.
+fn place<const N: usize>(
+    triangle: u32,
+    changes: &[Change],
+    change_of: &[Option<u32>],
+    points_m: [Vec3; N],
+) -> Option<[Vec3; N]> {
+    let change = change_of.get(triangle as usize).copied().flatten().and_then(|change| changes.get(change as usize));
+    let Some(change) = change else { return Some(points_m) };
+    let to = change.to?;
+    Some(points_m.map(|at_m| moved(&to, at_m)))
+}
+
+impl Corners {
+    /// The same with parts of the scene changed, and which of them are left: all but those of hidden parts.
+    pub fn changed(&self, changes: &[Change], change_of: &[Option<u32>]) -> (Vec<u32>, Self) {
+        let mut left = Vec::new();
+        let mut changed = Self::default();
+        let mut number_of = vec![0; self.points.len()];
+        for (number, (point, &triangle)) in self.points.iter().zip(&self.triangle_of).enumerate() {
+            let place = place(triangle, changes, change_of, [point.position_m, self.positions_m[number]]);
+            let Some([position_m, corner_m]) = place else { continue };
+            number_of[number] = left.len() as u32;
+            left.push(number as u32);
+            changed.points.push(Point { position_m, ..*point });
+            changed.positions_m.push(corner_m);
+            changed.triangle_of.push(triangle);
+        }
+        let stays = |triangle: &usize| place(*triangle as u32, changes, change_of, []).is_some();
+        let triangles = (0..self.triangles.len()).filter(stays).map(|triangle| self.triangles[triangle]);
+        changed.triangles = triangles.map(|corners| corners.map(|corner| number_of[corner as usize])).collect();
+        (left, changed)
+    }
+}
+
 /// The vertices of a mesh with the surfaces about them, in the order of the vertices.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn corners(mesh: &Mesh, cancel: &Cancel) -> Result<Corners, Cancelled> {
+pub fn corners(mesh: &Mesh, parts: &[Part], cancel: &Cancel) -> Result<Corners, Cancelled> {
     let faces: Vec<Patch> = faces(mesh).collect();
     let normals: Vec<DVec3> = faces.iter().map(Patch::twice_area_m2).collect();
+    let mut of_triangle = vec![0_usize; mesh.triangles.len()];
+    for (number, part) in parts.iter().enumerate() {
+        let ranges = part.triangles.iter().map(|range| range.start as usize..range.end as usize);
+        for range in ranges {
+            if let Some(part_of) = of_triangle.get_mut(range) {
+                part_of.fill(number);
+            }
+        }
+    }
+    let part_of: Vec<usize> = faces.iter().map(|face| of_triangle[face.triangle as usize]).collect();
     let mut about: Vec<(u32, u32)> = Vec::with_capacity(3 * faces.len());
     for (face, patch) in faces.iter().enumerate() {
         let vertices = mesh.triangles.get(patch.triangle as usize).copied().unwrap_or_default();
@@ -159,7 +215,7 @@ pub fn corners(mesh: &Mesh, cancel: &Cancel) -> Result<Corners, Cancelled> {
         let vertex = about[0].0;
         let Some(&at_m) = mesh.positions_m.get(vertex as usize) else { continue };
         let ids: Vec<usize> = about.iter().map(|&(_, face)| face as usize).collect();
-        for surface in surfaces(&ids, &normals) {
+        for surface in surfaces(&ids, &normals, &part_of) {
             let number = corners.points.len() as u32;
             corners.points.push(point_inside(at_m, &surface, &faces, &normals));
             corners.positions_m.push(at_m);
@@ -178,7 +234,7 @@ pub fn corners(mesh: &Mesh, cancel: &Cancel) -> Result<Corners, Cancelled> {
 }
 
 /// Groups of the faces about a vertex that bend by less than a crease from one to another.
-fn surfaces(faces: &[usize], normals: &[DVec3]) -> Vec<Vec<usize>> {
+fn surfaces(faces: &[usize], normals: &[DVec3], part_of: &[usize]) -> Vec<Vec<usize>> {
     let least = CREASE_RAD.cos();
     let mut left = faces.to_vec();
     let mut surfaces = Vec::new();
@@ -187,7 +243,9 @@ fn surfaces(faces: &[usize], normals: &[DVec3]) -> Vec<Vec<usize>> {
         let mut reached = 0;
         while let Some(&face) = surface.get(reached) {
             let normal = normals[face].normalize_or_zero();
-            let is_near = |&other: &usize| normals[other].normalize_or_zero().dot(normal) > least;
+            let is_near = |&other: &usize| {
+                part_of[other] == part_of[face] && normals[other].normalize_or_zero().dot(normal) > least
+            };
             let (near, far): (Vec<usize>, Vec<usize>) = left.into_iter().partition(is_near);
             left = far;
             surface.extend(near);
@@ -265,7 +323,7 @@ mod tests {
     #[test]
     fn a_cube_has_three_values_at_each_corner_and_each_point_stands_on_its_face() {
         let cube = cube();
-        let corners = corners(&cube, &Cancel::new()).unwrap();
+        let corners = corners(&cube, &[], &Cancel::new()).unwrap();
         assert_eq!(corners.points.len(), 24);
         for (triangle, vertices) in corners.triangles.iter().enumerate() {
             let [a, b, c] = cube.corners_m(triangle).unwrap();
@@ -286,7 +344,7 @@ mod tests {
         for height in [-0.2_f32, 0.2] {
             let positions = [[0., 0., 0.], [1., 0., height], [0., 1., height], [-1., 0., height], [0., -1., height]];
             let tent = mesh(&positions, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]);
-            let corners = corners(&tent, &Cancel::new()).unwrap();
+            let corners = corners(&tent, &[], &Cancel::new()).unwrap();
             assert_eq!(corners.points.len(), 5);
             for (point, at_m) in corners.points.iter().zip(&corners.positions_m) {
                 for face in faces(&tent).filter(|face| face.corners_m.contains(at_m)) {

@@ -18,7 +18,12 @@ const IN_DOUBT: f32 = 16.0 / 16_777_216.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Body {
     Triangle([Vec3; 3]),
-    Sphere { centre_m: Vec3, radius_m: f32 },
+    Sphere {
+        centre_m: Vec3,
+        radius_m: f32,
+    },
+    /// Nothing: what stood there was moved or hidden.
+    Blank,
 }
 
 /// The bodies of a light; none for a point.
@@ -38,6 +43,7 @@ impl Body {
         match self {
             Body::Triangle(corners) => corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max),
             Body::Sphere { centre_m, radius_m } => centre_m.abs().max_element() + radius_m,
+            Body::Blank => 0.0,
         }
     }
 
@@ -45,6 +51,7 @@ impl Body {
         let (low, high) = match *self {
             Body::Triangle([a, b, c]) => (a.min(b).min(c), a.max(b).max(c)),
             Body::Sphere { centre_m, radius_m } => (centre_m - radius_m, centre_m + radius_m),
+            Body::Blank => return Aabb::empty(),
         };
         Aabb::new((low - pad_m).into(), (high + pad_m).into())
     }
@@ -58,6 +65,7 @@ impl Body {
                 (b - a).cross(c - a).normalize_or(DVec3::Z).as_vec3()
             }
             Body::Sphere { centre_m, .. } => (at_m - centre_m).normalize_or(Vec3::Z),
+            Body::Blank => Vec3::Z,
         }
     }
 
@@ -66,6 +74,7 @@ impl Body {
         match *self {
             Body::Triangle(corners) => ray.distance_to_triangle_m(corners),
             Body::Sphere { centre_m, radius_m } => ray.distance_to_sphere_m(centre_m, radius_m),
+            Body::Blank => f32::INFINITY,
         }
     }
 }

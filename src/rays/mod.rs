@@ -7,20 +7,21 @@
 //!
 //! Coordinates are `f32`. One constant for each scene, [`Rays::epsilon_m`], says how far a point found by a ray may be
 //! off its surface; whoever starts a ray on a surface lifts it off by that much along the normal. Features thinner than
-//! this (0.1 mm in a scene of 10 m, 2 mm in a town, 1 cm in a city of 10 km) are not resolved. The build is serial and gives the same tree every time.
+//! this (0.1 mm in a scene of 10 m, 2 mm in a town, 1 cm in a city of 10 km) are not resolved. The build is serial and gives
+//! the same tree every time.
+//!
+//! Where parts of the mesh are moved, scaled or hidden ([`Rays::changed`]), their bodies are blanked in the tree, which stays as
+//! it is, and what became of them stands in a small tree of its own: a ray goes through both, and the time is that of what moves.
 
 mod body;
+mod level;
 mod lift;
 
+use crate::scene::parts::{Change, moved};
 use crate::scene::{Material, Scene};
 use body::{Body, Shear, UNITS_PER_M, bodies_of};
 use glam::Vec3;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::node::Bvh2Node;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use level::{Level, Solid};
 use obvhs::ray::RayHit;
 
 /// Share of the largest coordinate by which boxes are padded: rounding in the box test must not lose a ray that runs
@@ -29,12 +30,6 @@ const PAD_SHARE: f32 = 2e-6;
 
 /// Coordinates below this do not shrink the epsilon further, metres: no flat box may be left without a volume.
 const SMALLEST_SCENE_M: f32 = 1e-3;
-
-/// Share of the nodes that are tried in a better place. Six times as many gain a few percent for twice the build time.
-const REINSERTED_SHARE: f32 = 0.05;
-
-/// Bodies in a leaf of the wide tree; its format holds no more.
-const MOST_IN_LEAF: u32 = 3;
 
 /// What a ray can end on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -66,14 +61,11 @@ impl Hit {
 }
 
 /// The surfaces of a scene, ready to be hit. Building takes about a second a million triangles.
+#[derive(Clone)]
 pub struct Rays {
-    tree: CwBvh,
-    /// In the order of the tree's leaves.
-    bodies: Vec<Body>,
-    /// What each body belongs to.
-    surfaces: Vec<Surface>,
-    /// Share of light that each body passes straight on.
-    transmittances: Vec<f32>,
+    /// The scene as it was built, then what was moved.
+    levels: Vec<Level>,
+    largest_m: f32,
     epsilon_m: f32,
     /// How far off a measured surface rays start.
     leaving_m: f32,
@@ -81,56 +73,77 @@ pub struct Rays {
 
 impl std::fmt::Debug for Rays {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        out.debug_struct("Rays").field("bodies", &self.bodies.len()).field("epsilon_m", &self.epsilon_m).finish()
+        let bodies: usize = self.levels.iter().map(Level::len).sum();
+        out.debug_struct("Rays").field("bodies", &bodies).field("epsilon_m", &self.epsilon_m).finish()
     }
 }
 
 impl Rays {
     /// Builds the tree over all triangles and light bodies of a scene; a scene without any is clear everywhere.
     pub fn new(scene: &Scene) -> Self {
-        let mut parts: Vec<(Body, Surface, f32)> = Vec::with_capacity(scene.mesh.triangles.len());
+        let mut solids: Vec<Solid> = Vec::with_capacity(scene.mesh.triangles.len());
         for triangle in 0..scene.mesh.triangles.len() {
-            let transmittance = scene.material(triangle).map_or(0.0, Material::passes);
-            if let Some(corners_m) = scene.mesh.corners_m(triangle) {
-                parts.push((Body::Triangle(corners_m), Surface::Triangle(triangle as u32), transmittance));
-            }
+            solids.extend(scene.mesh.corners_m(triangle).map(|corners_m| solid_of(scene, triangle, corners_m)));
         }
         for (number, light) in scene.lights.iter().enumerate() {
             for body in bodies_of(light) {
-                parts.push((body, Surface::Light(number), 0.0));
+                solids.push(Solid { body, surface: Surface::Light(number), transmittance: 0.0 });
             }
         }
 
         let sensors = scene.sensors.iter().map(|sensor| sensor.position_m.abs().max_element());
         let largest_m =
-            parts.iter().map(|(body, ..)| body.largest_coordinate()).chain(sensors).fold(SMALLEST_SCENE_M, f32::max);
-        let boxes: Vec<Aabb> = parts.iter().map(|(body, ..)| body.padded_box(PAD_SHARE * largest_m)).collect();
-        let tree = tree_over(&boxes);
+            solids.iter().map(|solid| solid.body.largest_coordinate()).chain(sensors).fold(SMALLEST_SCENE_M, f32::max);
+        let levels = vec![Level::new(&solids, PAD_SHARE * largest_m)];
+        Self { levels, largest_m, epsilon_m: lift::epsilon_m(largest_m), leaving_m: lift::leaving_m(largest_m) }
+    }
 
-        let leaves = tree.primitive_indices.iter().map(|&part| parts[part as usize]);
-        let (mut bodies, mut surfaces, mut transmittances) = (Vec::new(), Vec::new(), Vec::new());
-        for (body, surface, transmittance) in leaves {
-            bodies.push(body);
-            surfaces.push(surface);
-            transmittances.push(transmittance);
+    /// The rays of the scene, which are these, with some of its parts changed: as new ones would be, at a cost of what is changed
+    /// and a copy of the bodies. `None` where a new tree is needed: something moves beyond the scene's largest coordinate, which
+    /// decides on [`Rays::epsilon_m`], or these have been changed before.
+    pub fn changed(&self, scene: &Scene, changes: &[Change]) -> Option<Self> {
+        let [before] = self.levels.as_slice() else { return None };
+        let mut moving = Vec::new();
+        for change in changes {
+            let Some(to) = &change.to else { continue };
+            for triangle in scene.triangles_of(change.part) {
+                let corners_m = scene.mesh.corners_m(triangle)?.map(|at_m| moved(to, at_m));
+                moving.push(solid_of(scene, triangle, corners_m));
+            }
         }
-        let (epsilon_m, leaving_m) = (lift::epsilon_m(largest_m), lift::leaving_m(largest_m));
-        Self { tree, bodies, surfaces, transmittances, epsilon_m, leaving_m }
+        let largest_m = self.largest_m;
+        if moving.iter().any(|solid| solid.body.largest_coordinate() > largest_m) {
+            return None;
+        }
+        let is_changed = scene.change_of_triangles(changes);
+        let stays = |surface| match surface {
+            Surface::Triangle(triangle) => is_changed.get(triangle as usize).is_none_or(Option::is_none),
+            Surface::Light(_) => true,
+        };
+        let levels = vec![before.keeping(stays), Level::new(&moving, PAD_SHARE * largest_m)];
+        Some(Self { levels, ..*self })
     }
 
     /// The first surface, glazing too, from `origin_m` along the unit vector `direction` within `max_m` (which may be
     /// infinite).
     pub fn closest(&self, origin_m: Vec3, direction: Vec3, max_m: f32) -> Option<Hit> {
         let ray = Shear::new(origin_m, direction);
-        let mut found = RayHit::none();
-        let any = self.tree.ray_traverse(ray.in_tree(max_m), &mut found, |_, leaf| {
-            self.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray) * UNITS_PER_M)
-        });
-        let leaf = found.primitive_id as usize;
-        let (body, surface) = (self.bodies.get(leaf)?, self.surfaces.get(leaf)?);
-        let distance_m = found.t / UNITS_PER_M;
-        let normal = body.normal(origin_m + distance_m * direction);
-        any.then_some(Hit { distance_m, normal, front: normal.dot(direction) < 0.0, surface: *surface })
+        let mut nearest: Option<Hit> = None;
+        for level in &self.levels {
+            let within_m = nearest.map_or(max_m, |hit| hit.distance_m);
+            let mut found = RayHit::none();
+            let any = level.tree.ray_traverse(ray.in_tree(within_m), &mut found, |_, leaf| {
+                level.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray) * UNITS_PER_M)
+            });
+            let leaf = found.primitive_id as usize;
+            let (Some(body), Some(surface), true) = (level.bodies.get(leaf), level.surfaces.get(leaf), any) else {
+                continue;
+            };
+            let distance_m = found.t / UNITS_PER_M;
+            let normal = body.normal(origin_m + distance_m * direction);
+            nearest = Some(Hit { distance_m, normal, front: normal.dot(direction) < 0.0, surface: *surface });
+        }
+        nearest
     }
 
     /// Whether nothing opaque lies between two points; glazing does not block. Both ends are pulled in by
@@ -170,21 +183,23 @@ impl Rays {
     fn passing(&self, from_m: Vec3, direction: Vec3, length_m: f32, ignore: impl Fn(Surface) -> bool) -> f32 {
         let ray = Shear::new(from_m, direction);
         let mut panes: Vec<(f32, f32)> = Vec::new();
-        let misses = self.tree.ray_traverse_miss(ray.in_tree(length_m), |_, leaf| {
-            let distance_m = self.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray));
-            if distance_m >= length_m || self.surfaces.get(leaf).is_some_and(|&surface| ignore(surface)) {
-                return f32::INFINITY;
-            }
-            match self.transmittances.get(leaf) {
-                Some(&transmittance) if transmittance > 0.0 => {
-                    panes.push((distance_m, transmittance));
-                    f32::INFINITY
+        for level in &self.levels {
+            let misses = level.tree.ray_traverse_miss(ray.in_tree(length_m), |_, leaf| {
+                let distance_m = level.bodies.get(leaf).map_or(f32::INFINITY, |body| body.distance_m(&ray));
+                if distance_m >= length_m || level.surfaces.get(leaf).is_some_and(|&surface| ignore(surface)) {
+                    return f32::INFINITY;
                 }
-                _ => distance_m * UNITS_PER_M,
+                match level.transmittances.get(leaf) {
+                    Some(&transmittance) if transmittance > 0.0 => {
+                        panes.push((distance_m, transmittance));
+                        f32::INFINITY
+                    }
+                    _ => distance_m * UNITS_PER_M,
+                }
+            });
+            if !misses {
+                return 0.0;
             }
-        });
-        if !misses {
-            return 0.0;
         }
         // A ray through the seam of two triangles meets both, and is weakened once.
         panes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -193,45 +208,10 @@ impl Rays {
     }
 }
 
-/// A balanced tree, then improved by moving the subtrees that cost most to better places (Meister & Bittner 2018). The
-/// crate's own bottom-up builder was no faster to trace, and where thousands of boxes are alike (repeated faces) it took
-/// a minute to chain them into a tree as deep as they are many.
-fn tree_over(boxes: &[Aabb]) -> CwBvh {
-    if boxes.is_empty() {
-        return CwBvh::default();
-    }
-    let mut tree = balanced(boxes);
-    ReinsertionOptimizer::default().run(&mut tree, REINSERTED_SHARE, None);
-    bvh2_to_cwbvh(&tree, MOST_IN_LEAF, true, false)
-}
-
-/// Halves the boxes by number along the longest axis of their centres, again and again.
-fn balanced(boxes: &[Aabb]) -> Bvh2 {
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    let mut nodes = vec![Bvh2Node::default()];
-    let mut open = vec![(0, 0..boxes.len())];
-    while let Some((node, range)) = open.pop() {
-        let part = &mut order[range.clone()];
-        let around = part.iter().fold(Aabb::empty(), |around, &at| around.union(&boxes[at as usize]));
-        if part.len() == 1 {
-            nodes[node] = Bvh2Node::new(around, 1, range.start as u32);
-            continue;
-        }
-        let centres = part.iter().fold(Aabb::empty(), |mut centres, &at| *centres.extend(boxes[at as usize].center()));
-        let size = centres.diagonal();
-        let axis = (0..3).fold(0, |widest, axis| if size[axis] > size[widest] { axis } else { widest });
-        let half = part.len() / 2;
-        part.select_nth_unstable_by(half, |&a, &b| {
-            let along = |at: u32| boxes[at as usize].center()[axis];
-            along(a).total_cmp(&along(b)).then(a.cmp(&b))
-        });
-        let child = nodes.len();
-        nodes.extend([Bvh2Node::default(); 2]);
-        nodes[node] = Bvh2Node::new(around, 0, child as u32);
-        open.push((child, range.start..range.start + half));
-        open.push((child + 1, range.start + half..range.end));
-    }
-    Bvh2 { nodes, primitive_indices: order, children_are_ordered_after_parents: true, ..Bvh2::default() }
+/// A triangle of a scene, wherever its corners are.
+fn solid_of(scene: &Scene, triangle: usize, corners_m: [Vec3; 3]) -> Solid {
+    let transmittance = scene.material(triangle).map_or(0.0, Material::passes);
+    Solid { body: Body::Triangle(corners_m), surface: Surface::Triangle(triangle as u32), transmittance }
 }
 
 #[cfg(test)]
@@ -406,7 +386,7 @@ mod tests {
             let rays = Rays::new(&scene);
             let direction = (target - origin).normalize_or(Vec3::X);
             let ray = Shear::new(origin, direction);
-            let each = rays.bodies.iter().map(|body| body.distance_m(&ray)).fold(f32::INFINITY, f32::min);
+            let each = rays.levels[0].bodies.iter().map(|body| body.distance_m(&ray)).fold(f32::INFINITY, f32::min);
             let found = rays.closest(origin, direction, f32::INFINITY).map_or(f32::INFINITY, |hit| hit.distance_m);
             prop_assert!(found == each || (found - each).abs() < 1e-5, "{} {}", found, each);
             let length = origin.distance(target);

@@ -6,7 +6,8 @@
 use super::error::{Kind, SceneError};
 use super::file::{DEFAULT_REFLECTANCE, DescribedLight, Description, Lined, Override, Up, read_scene_file};
 use super::input::{FARTHEST_M, Input, counted, read_file};
-use super::merge::{Part, merge};
+use super::merge::{Merged, OfFile, merge};
+use super::parts::Part;
 use super::read::{FORMATS, Format, RawMesh};
 use super::reference::{match_sensors, read_reference_csv};
 use super::sensors::{RawSensor, read_pts, read_sensors_csv};
@@ -119,11 +120,15 @@ impl Loader<'_> {
         let meshes = self.meshes(&description, bare)?;
         let (materials, numbers) = self.materials(&description, &meshes, &mut scene.warnings)?;
         scene.materials = materials;
-        let parts = numbers.iter().zip(meshes).map(|(numbers, mesh)| mesh.into_part(numbers)).collect();
+        let mut names = Vec::new();
+        let alone = meshes.len() == 1;
+        let files =
+            numbers.iter().zip(meshes).map(|(numbers, mesh)| mesh.into_file(numbers, alone, &mut names)).collect();
         self.progress.begin("merge", 0);
-        let merged = merge(self.path, parts, &scene.materials, self.cancel);
+        let merged = merge(self.path, files, &scene.materials, self.cancel);
         self.progress.end();
-        let (mesh, origin_m, warnings) = merged?;
+        let Merged { mesh, origin_m, part_of, kept_by, warnings } = merged?;
+        scene.parts = Part::of_triangles(names, &part_of, &kept_by);
         (scene.mesh, scene.origin_m) = (mesh, origin_m);
         scene.warnings.extend(warnings);
 
@@ -262,10 +267,21 @@ struct LoadedMesh {
 }
 
 impl LoadedMesh {
-    /// The same with material numbers of the scene, of which `numbers` has one for each of the mesh's own.
-    fn into_part(self, numbers: &[u32]) -> Part {
+    /// The same with numbers of the scene: of materials, of which `numbers` has one for each of the mesh's own, and of parts,
+    /// whose names are added to `names`: the file's name where it knows of no parts, and before them where several files may
+    /// have parts of one name.
+    fn into_file(self, numbers: &[u32], alone: bool, names: &mut Vec<String>) -> OfFile {
         let number = |&own: &u32| numbers.get(own as usize).copied().unwrap_or_default();
-        Part {
+        let first = names.len() as u32;
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        match self.raw.parts.as_slice() {
+            [] => names.push(stem.to_string()),
+            parts if alone => names.extend_from_slice(parts),
+            parts => names.extend(parts.iter().map(|part| format!("{stem}/{part}"))),
+        }
+        let part = |triangle: usize| first + self.raw.part_of.get(triangle).copied().unwrap_or_default();
+        OfFile {
+            part_of: (0..self.raw.triangles.len()).map(part).collect(),
             path: self.path,
             material_of: self.raw.material_of.iter().map(number).collect(),
             positions_m: self.raw.positions,

@@ -20,7 +20,7 @@ const FLATTEST: f64 = 1e-9;
 const WIDE_M: f32 = 16_384.0;
 
 /// Triangles of one file, on their way into the scene.
-pub struct Part {
+pub struct OfFile {
     /// The file, for errors and warnings.
     pub path: PathBuf,
     /// Vertices, metres, Z up, in the user's coordinates.
@@ -29,21 +29,33 @@ pub struct Part {
     pub triangles: Vec<[u32; 3]>,
     /// Material of each triangle in the scene.
     pub material_of: Vec<u32>,
+    /// Number in the scene of the named part that each triangle belongs to.
+    pub part_of: Vec<u32>,
     /// Faces that were left out before for having too few corners.
     pub too_few_corners: usize,
 }
 
-/// The merged mesh, its origin in the user's coordinates (metres), and what was left out, a sentence each.
+/// The mesh of all files.
+#[derive(Debug)]
+pub struct Merged {
+    /// The mesh, around its origin.
+    pub mesh: Mesh,
+    /// The origin in the user's coordinates, metres.
+    pub origin_m: DVec3,
+    /// Part of each of its triangles.
+    pub part_of: Vec<u32>,
+    /// For each face that was left out because one of another part lies in the same place: the part that kept it.
+    pub kept_by: Vec<u32>,
+    /// What was left out, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// The merged mesh.
 ///
 /// # Errors
 /// [`Kind::Outside`] for a vertex beyond [`FARTHEST_M`], [`Kind::TooMany`] vertices, [`Kind::EmptyMesh`] (placed at
 /// `scene`) if no face is left, [`Kind::Cancelled`].
-pub fn merge(
-    scene: &Path,
-    parts: Vec<Part>,
-    materials: &[Material],
-    cancel: &Cancel,
-) -> Result<(Mesh, DVec3, Vec<String>), SceneError> {
+pub fn merge(scene: &Path, parts: Vec<OfFile>, materials: &[Material], cancel: &Cancel) -> Result<Merged, SceneError> {
     let go_on = || cancel.check().map_err(|_| SceneError::new(scene, None, Kind::Cancelled));
     let mut warnings = Vec::new();
     let origin_m = origin_of(&parts)?.ok_or_else(|| SceneError::new(scene, None, Kind::EmptyMesh))?;
@@ -54,20 +66,24 @@ pub fn merge(
         return Err(SceneError::new(scene, None, kind));
     }
     let mut mesh = Mesh::default();
-    let mut labels = Vec::new();
+    let (mut labels, mut part_of) = (Vec::new(), Vec::new());
     for part in parts {
         let first = mesh.positions_m.len() as u32;
         // Adding zero turns -0 into 0, so that equal coordinates have equal bits.
         mesh.positions_m.extend(part.positions_m.iter().map(|&p| (p - origin_m).as_vec3() + Vec3::ZERO));
         mesh.triangles.extend(part.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
         mesh.material_of.extend_from_slice(&part.material_of);
+        part_of.extend_from_slice(&part.part_of);
         labels.push((part.path.clone(), mesh.triangles.len(), part.too_few_corners));
     }
     go_on()?;
     weld(&mut mesh);
     go_on()?;
 
-    let fates = fates(&mesh, materials);
+    let (fates, instead) = fates(&mesh, materials);
+    let part = |triangle: usize| part_of.get(triangle).copied().unwrap_or_default();
+    let elsewhere = instead.into_iter().filter(|&[kept, left_out]| part(kept) != part(left_out));
+    let kept_by = elsewhere.map(|[kept, _]| part(kept)).collect();
     go_on()?;
     let mut first = 0;
     for (path, end, too_few_corners) in labels {
@@ -83,7 +99,7 @@ pub fn merge(
         }
         first = end;
     }
-    keep(&mut mesh, &fates);
+    keep(&mut mesh, &mut part_of, &fates);
 
     let Some((low, high)) = mesh.bounds_m() else {
         return Err(SceneError::new(scene, None, Kind::EmptyMesh));
@@ -93,11 +109,11 @@ pub fn merge(
         let error_mm = 1e3 * 0.25 * f64::from(widest_m) * f64::from(f32::EPSILON);
         warnings.push(format!("the mesh is {:.0} km wide: its vertices are held to {error_mm:.1} mm", widest_m / 1e3));
     }
-    Ok((mesh, origin_m, warnings))
+    Ok(Merged { mesh, origin_m, part_of, kept_by, warnings })
 }
 
 /// The whole metres nearest to the middle of the box around all faces; `None` without faces.
-fn origin_of(parts: &[Part]) -> Result<Option<DVec3>, SceneError> {
+fn origin_of(parts: &[OfFile]) -> Result<Option<DVec3>, SceneError> {
     let mut bounds: Option<(DVec3, DVec3)> = None;
     for part in parts {
         for &vertex in part.triangles.iter().flatten() {
@@ -136,8 +152,8 @@ enum Fate {
     Duplicate,
 }
 
-/// What becomes of each triangle.
-fn fates(mesh: &Mesh, materials: &[Material]) -> Vec<Fate> {
+/// What becomes of each triangle, and for each duplicate the one that stays in its place, before it.
+fn fates(mesh: &Mesh, materials: &[Material]) -> (Vec<Fate>, Vec<[usize; 2]>) {
     let degenerate = |triangle: usize| {
         let Some([a, b, c]) = mesh.corners_m(triangle) else { return true };
         let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
@@ -154,16 +170,18 @@ fn fates(mesh: &Mesh, materials: &[Material]) -> Vec<Fate> {
     };
     let mut order: Vec<([u32; 3], u32)> = mesh.triangles.iter().map(sorted).zip(0..).collect();
     order.par_sort_unstable();
+    let mut instead = Vec::new();
     for same in order.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
         let alike: Vec<usize> = same.iter().map(|&(_, triangle)| triangle as usize).collect();
         let kept = stays(&alike, mesh, materials);
         for triangle in alike {
             if fates[triangle] == Fate::Kept && !kept.contains(&triangle) {
                 fates[triangle] = Fate::Duplicate;
+                instead.extend(kept.first().map(|&kept| [kept, triangle]));
             }
         }
     }
-    fates
+    (fates, instead)
 }
 
 /// Which of several triangles with the same corners stay; ascending numbers in, one or two out.
@@ -188,11 +206,12 @@ fn stays(alike: &[usize], mesh: &Mesh, materials: &[Material]) -> Vec<usize> {
 }
 
 /// Leaves out all triangles that are not kept, and then all vertices that none uses.
-fn keep(mesh: &mut Mesh, fates: &[Fate]) {
+fn keep(mesh: &mut Mesh, part_of: &mut Vec<u32>, fates: &[Fate]) {
     let kept = |&(_, &fate): &(usize, &Fate)| fate == Fate::Kept;
     let numbers: Vec<usize> = fates.iter().enumerate().filter(kept).map(|(number, _)| number).collect();
     mesh.triangles = numbers.iter().map(|&number| mesh.triangles[number]).collect();
     mesh.material_of = numbers.iter().map(|&number| mesh.material_of[number]).collect();
+    *part_of = numbers.iter().map(|&number| part_of[number]).collect();
 
     let mut renumbered = vec![0_u32; mesh.positions_m.len()];
     for &vertex in mesh.triangles.iter().flatten() {
@@ -215,12 +234,13 @@ fn keep(mesh: &mut Mesh, fates: &[Fate]) {
 mod tests {
     use super::*;
 
-    fn part(positions: &[[f64; 3]], triangles: &[[u32; 3]], material_of: &[u32]) -> Part {
-        Part {
+    fn part(positions: &[[f64; 3]], triangles: &[[u32; 3]], material_of: &[u32]) -> OfFile {
+        OfFile {
             path: PathBuf::from("a.obj"),
             positions_m: positions.iter().copied().map(DVec3::from_array).collect(),
             triangles: triangles.to_vec(),
             material_of: material_of.to_vec(),
+            part_of: (0..triangles.len() as u32).collect(),
             too_few_corners: 0,
         }
     }
@@ -229,7 +249,7 @@ mod tests {
         Material { name: String::new(), reflectance: 0.5, transmittance, emission_w_m2_sr }
     }
 
-    fn merged(part: Part) -> Result<(Mesh, DVec3, Vec<String>), SceneError> {
+    fn merged(part: OfFile) -> Result<Merged, SceneError> {
         let materials = [material(0.0, 0.0), material(0.0, 0.7), material(5.0, 0.0)];
         merge(Path::new("a.toml"), vec![part], &materials, &Cancel::new())
     }
@@ -243,7 +263,7 @@ mod tests {
 
     #[test]
     fn city_coordinates_keep_their_millimetres() {
-        let (mesh, origin_m, _) = merged(part(&CITY, &[[0, 1, 2]], &[0])).unwrap();
+        let Merged { mesh, origin_m, .. } = merged(part(&CITY, &[[0, 1, 2]], &[0])).unwrap();
         assert_eq!(origin_m, DVec3::new(678_098.0, 5_403_594.0, 413.0));
         assert_eq!(mesh.positions_m.len(), 3);
         for (position, want) in mesh.positions_m.iter().zip(CITY) {
@@ -258,8 +278,10 @@ mod tests {
     fn duplicates_and_degenerates_are_left_out_and_counted() {
         let corners = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 1., 0.], [2., 0., 0.]];
         let triangles = [[0, 1, 2], [1, 3, 0], [0, 2, 1], [0, 1, 1], [0, 1, 4]];
-        let (mesh, _, warnings) = merged(part(&corners, &triangles, &[0; 5])).unwrap();
+        let Merged { mesh, warnings, part_of, kept_by, .. } = merged(part(&corners, &triangles, &[0; 5])).unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2]]);
+        // Every triangle was a part of its own: the first kept its place for two others.
+        assert_eq!((part_of.as_slice(), kept_by.as_slice()), (&[0][..], &[0, 0][..]));
         assert_eq!(warnings, ["a.obj: 2 degenerate faces left out", "a.obj: 2 duplicate faces left out"]);
     }
 
@@ -267,7 +289,7 @@ mod tests {
     fn of_coinciding_faces_emitters_stay_one_a_winding_then_what_is_opaque() {
         let corners = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
         let kept = |triangles: &[[u32; 3]], material_of: &[u32]| {
-            let (mesh, ..) = merged(part(&corners, triangles, material_of)).unwrap();
+            let Merged { mesh, .. } = merged(part(&corners, triangles, material_of)).unwrap();
             mesh.triangles.into_iter().zip(mesh.material_of).collect::<Vec<_>>()
         };
         assert_eq!(kept(&[[0, 1, 2], [1, 2, 0]], &[1, 0]), [([1, 2, 0], 0)]);

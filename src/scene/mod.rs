@@ -12,6 +12,7 @@ pub mod file;
 pub mod input;
 mod load;
 mod merge;
+pub mod parts;
 pub mod read;
 pub mod reference;
 pub mod sensors;
@@ -30,6 +31,8 @@ pub struct Scene {
     pub origin_m: DVec3,
     /// All meshes as one.
     pub mesh: Mesh,
+    /// The parts of the mesh that its files name, in their order; every triangle is in one.
+    pub parts: Vec<parts::Part>,
     /// Materials; [`Mesh::material_of`] points into them.
     pub materials: Vec<Material>,
     /// Lights of the scene file, in its order (emissive mesh faces come besides: see `light::Sources`).

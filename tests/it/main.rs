@@ -67,3 +67,8 @@ mod exposure_robust;
 
 /// Real cities against Radiance.
 mod cities;
+/// Exposure on faces, at vertices, and in pictures.
+mod views;
+
+/// Parts of a scene moved, scaled or hidden.
+mod dynamic;

@@ -1,15 +1,18 @@
-//! The command `expose`: what a scene receives from sun and sky over a period, by rays: at its sensors, on its faces, at its
+//! The command `expose`: what a scene receives from sun and sky over a period: at its sensors, on its faces, at its
 //! vertices, or wherever a camera looks.
 
 pub mod args;
 mod places;
 mod report;
+mod update;
 
 use super::run::{say, start_threads, warn};
 use super::stages::Stages;
 use super::tell;
 use super::write::Folder;
-use crate::daylight::cast::cast_at;
+use crate::daylight::cast::Casting;
+use crate::daylight::choose::{Chosen, choose};
+use crate::daylight::way::{Ground, Way};
 use crate::export::exposures::mesh::Colours;
 use crate::export::exposures::span;
 use crate::job::Cancel;
@@ -21,9 +24,10 @@ use anyhow::{Context, Result};
 use args::At;
 pub use args::ExposeArgs;
 use places::Places;
-use report::{Found, Report};
+use report::{Found, Report, Update};
 use std::io::IsTerminal;
 use std::time::Instant;
+use update::{Before, odd, typed};
 
 /// Runs the command.
 ///
@@ -37,18 +41,37 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
     let outdoors = args.site.outdoors(&mut scene, &args.scene, &stages, cancel)?;
     let at = places::at(args, &scene)?;
     let camera = places::camera(args, at, &scene)?;
+    let edits = args.edits.all();
+    let changes = scene.changes(&edits).with_context(|| args.scene.display().to_string())?;
 
     let begin = Instant::now();
-    let rays = Rays::new(&scene);
-    let places = Places::of(args, at, camera.as_ref(), &scene, &rays, &stages, cancel)?;
     let steps = outdoors.steps_unless(cancel).with_context(|| scene.name.clone())?;
     let settings = MapSettings { model: outdoors.model, haze: outdoors.haze, ..MapSettings::default() };
     let map = ExposureMap::build(&steps, &settings, &stages, cancel)?;
-    let casting = places::casting(args, at, args.flags.seed.or(scene.model.seed).unwrap_or(0));
-    let found = cast_at(&rays, places.asked(), &map, outdoors.north_rad, casting, &stages, cancel)?;
-    let seconds = begin.elapsed().as_secs_f64();
+    let seed = args.flags.seed.or(scene.model.seed).unwrap_or(0);
+    let way = places::way(args, at, seed)?;
+    let begin_rays = Instant::now();
+    let rays = Rays::new(&scene);
+    let places = Places::of(args, at, camera.as_ref(), &scene, &rays, &stages, cancel)?;
+    let north_rad = outdoors.north_rad;
+    let ground = Ground { scene: &scene, rays: &rays, map: &map, north_rad, seed };
+    let (asked, buffers) = (places.asked(), places.buffers());
+    let chosen = match way {
+        Some(way) => Chosen { way: way.prepare(&ground, cancel)?, tried: Vec::new() },
+        None => {
+            let tolerance = places::tolerance(args, at, &scene);
+            choose(&ground, asked, buffers, &places::ways(at, seed), tolerance, &stages, cancel)?
+        }
+    };
+    let exposures = chosen.way.ask(&ground, asked, buffers, &stages, cancel)?;
+    let [seconds, full_seconds] = [begin, begin_rays].map(|begin| begin.elapsed().as_secs_f64());
 
-    let mut warnings = [scene.warnings.as_slice(), &steps.warnings].concat();
+    let mut warnings = [scene.warnings.as_slice(), &steps.warnings, &odd(&scene, &changes)].concat();
+    let casting = if let Way::Rays(casting) = chosen.way.way { casting } else { Casting::default() };
+    let before =
+        Before { scene: &scene, rays: &rays, places: &places, exposures: &exposures, map: &map, north_rad, casting };
+    let after = (!edits.is_empty()).then(|| before.after(changes, &stages, cancel)).transpose()?;
+
     if places.points.is_empty() {
         warnings.push(nothing(at).into());
     }
@@ -58,14 +81,29 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
     warn(&warnings);
     outdoors.notes.iter().for_each(|note| tell(format_args!("note: {note}")));
 
-    let colours = Colours { quantity: args.show, span: span(args.show, &found) };
-    let mut files = Vec::new();
+    let colours = Colours { quantity: args.show, span: span(args.show, &exposures) };
+    let [mut files, mut files_after] = [Vec::new(), Vec::new()];
     if let Some(folder) = &mut folder {
         let (title, note) = titles(args, &scene, &outdoors, &map);
-        files = places.write(folder, "exposure", &scene, &found, colours, [&title, &note])?;
+        files = places.write(folder, "exposure", &scene, &exposures, colours, [&title, &note])?;
+        if let Some(after) = &after {
+            let title = format!("{title}, after {}", edits.iter().map(typed).collect::<Vec<_>>().join(", "));
+            let name = "exposure_after";
+            files_after = after.places.write(folder, name, &scene, &after.exposures, colours, [&title, &note])?;
+        }
     }
-    let found = Found::new(&scene, at, &places, &found, casting, &files);
-    let report = Report::new(&scene, at, &map, seconds, found, &warnings);
+    let found = Found::new(&scene, at, &places, &exposures, &files);
+    let update = after.as_ref().map(|after| Update {
+        edits: edits.iter().map(typed).collect(),
+        parts: after.changed[0],
+        triangles: after.changed[1],
+        count: after.places.points.len(),
+        again: after.again,
+        seconds: after.seconds,
+        full_seconds,
+        found: Found::new(&scene, at, &after.places, &after.exposures, &files_after),
+    });
+    let report = Report::new(&scene, at, &map, seconds, &chosen, found, update, &warnings);
     let json = serde_json::to_string(&report)?;
     if let Some(folder) = &mut folder {
         folder.file("exposure.json", |out| writeln!(out, "{json}"))?;

@@ -1,11 +1,13 @@
 //! Where `expose` asks, and which files become of the answers.
 
-use super::args::{At, ExposeArgs};
+use super::args::{At, ExposeArgs, WayName};
 use crate::cli::tell;
 use crate::cli::write::Folder;
 use crate::daylight::camera::{Buffers, Camera};
 use crate::daylight::cast::{Asked, Casting};
-use crate::daylight::surface::{Corners, Patch, corners, default_patch_m, patches};
+use crate::daylight::dynamic::{Disturbance, seen_again};
+use crate::daylight::surface::{Corners, Patch, corners, default_patch_m, patches, patches_changed};
+use crate::daylight::way::Way;
 use crate::daylight::{self, Exposure, Point};
 use crate::export::exposures::mesh::{Colours, write_corners, write_patches};
 use crate::export::exposures::view::{View, write_exr, write_npy};
@@ -13,8 +15,13 @@ use crate::export::exposures::{self, picture};
 use crate::job::{Cancel, Progress};
 use crate::rays::Rays;
 use crate::scene::Scene;
+use crate::scene::parts::Change;
 use anyhow::{Context, Result, bail};
 use std::io::Write;
+
+/// Tolerances of what is read, and of what is looked at.
+const SENSOR_TOLERANCE: f64 = 1.02;
+const PICTURE_TOLERANCE: f64 = 1.1;
 
 /// How the points lie.
 #[derive(Debug, Clone)]
@@ -32,6 +39,17 @@ pub enum Layout {
     Vertices(Corners),
     /// Pixels of a picture.
     Pixels(Buffers),
+}
+
+/// The scene after changes.
+#[derive(Debug)]
+pub struct Scenery {
+    /// What became of its parts.
+    pub changes: Vec<Change>,
+    /// What rays hit now.
+    pub rays: Rays,
+    /// Where that differs from before.
+    pub disturbance: Disturbance,
 }
 
 /// Points, and how they lie. The numbers tell each from the others, also where some of them are gone.
@@ -81,6 +99,40 @@ pub fn casting(args: &ExposeArgs, at: At, seed: u64) -> Casting {
     }
 }
 
+/// The way that was asked for by name or by numbers of rays; `None` where tolerance is to choose. Edits are followed by rays.
+///
+/// # Errors
+/// Flags that do not go together.
+pub fn way(args: &ExposeArgs, at: At, seed: u64) -> Result<Option<Way>> {
+    let by_rays = args.sun_rays.is_some() || args.sky_rays.is_some();
+    let rays = Way::Rays(casting(args, at, seed));
+    let edited = !args.edits.all().is_empty();
+    match args.method {
+        Some(WayName::Rays) => Ok(Some(rays)),
+        Some(_) if by_rays => bail!("--sun-rays and --sky-rays are for --method rays"),
+        Some(_) if edited => bail!("--move, --scale and --hide are followed by --method rays"),
+        None if by_rays || edited => Ok(Some(rays)),
+        None => Ok(None),
+        Some(WayName::Isotropic) => Ok(Some(Way::Isotropic)),
+        Some(WayName::Maps) => {
+            let ways = ways(at, seed);
+            Ok(ways.into_iter().rfind(|way| matches!(way, Way::Maps(_) | Way::View { .. })))
+        }
+    }
+}
+
+/// The ways that tolerance chooses among.
+pub fn ways(at: At, seed: u64) -> [Way; 6] {
+    if at == At::Camera { Way::for_pixels(seed) } else { Way::for_points(seed) }
+}
+
+/// The factor within which exposure is to be right: as typed, else as the scene says, else 1.02; 1.1 where what comes of it is
+/// looked at and not read.
+pub fn tolerance(args: &ExposeArgs, at: At, scene: &Scene) -> f64 {
+    let by_place = if at == At::Sensors { SENSOR_TOLERANCE } else { PICTURE_TOLERANCE };
+    args.tolerance.or(scene.model.tolerance).unwrap_or(by_place)
+}
+
 /// The camera that was asked for; `None` for other places.
 ///
 /// # Errors
@@ -128,7 +180,7 @@ impl Places {
                 (Layout::Patches { patches, patch_m }, points)
             }
             (At::Vertices, None) => {
-                let corners = corners(&scene.mesh, cancel)?;
+                let corners = corners(&scene.mesh, &scene.parts, cancel)?;
                 let points = corners.points.clone();
                 (Layout::Vertices(corners), points)
             }
@@ -145,10 +197,40 @@ impl Places {
         Self { layout: Layout::Pixels(buffers), points, numbers }
     }
 
+    /// The places after parts of the scene were changed: what lies on them goes with them, sensors stay, and a camera looks again
+    /// with rays that meet a change.
+    ///
+    /// # Errors
+    /// An interrupt.
+    pub fn changed(&self, scene: &Scene, scenery: &Scenery, progress: &dyn Progress, cancel: &Cancel) -> Result<Self> {
+        let Scenery { rays, disturbance, changes } = scenery;
+        let (layout, points, numbers) = match &self.layout {
+            Layout::Sensors => return Ok(self.clone()),
+            Layout::Pixels(buffers) => {
+                return Ok(Self::seen(seen_again(buffers, rays, disturbance, progress, cancel)?));
+            }
+            Layout::Patches { patches, patch_m } => {
+                let (left, patches) = patches_changed(patches, changes, &scene.change_of_triangles(changes));
+                let points = patches.iter().map(Patch::point).collect();
+                (Layout::Patches { patches, patch_m: *patch_m }, points, left)
+            }
+            Layout::Vertices(corners) => {
+                let (left, corners) = corners.changed(changes, &scene.change_of_triangles(changes));
+                (Layout::Vertices(corners.clone()), corners.points, left)
+            }
+        };
+        Ok(Self { layout, points, numbers })
+    }
+
     /// The question to the rays.
     pub fn asked(&self) -> Asked<'_> {
         let in_the_open = matches!(self.layout, Layout::Pixels(_));
         Asked { points: &self.points, numbers: Some(&self.numbers), in_the_open }
+    }
+
+    /// The buffers of the camera, where there is one.
+    pub fn buffers(&self) -> Option<&Buffers> {
+        if let Layout::Pixels(buffers) = &self.layout { Some(buffers) } else { None }
     }
 
     /// What share each point has in a mean: patches by their area, m2.

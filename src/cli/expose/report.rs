@@ -3,7 +3,7 @@
 use super::args::At;
 use super::places::Places;
 use crate::cli::table::Table;
-use crate::daylight::cast::Casting;
+use crate::daylight::choose::{Chosen, Tried};
 use crate::daylight::{Exposure, Quantity};
 use crate::export::exposures::has_value;
 use crate::light::Status;
@@ -18,6 +18,11 @@ pub struct Report<'a> {
     scene: &'a str,
     seconds: f64,
     method: &'static str,
+    /// All that the method is, in words.
+    way: String,
+    /// What was tried for the tolerance.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    tried: Vec<Trial>,
     ghi: f64,
     dni: f64,
     dhi: f64,
@@ -25,7 +30,37 @@ pub struct Report<'a> {
     at: Option<&'static str>,
     #[serde(flatten)]
     found: Found<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    update: Option<Update<'a>>,
     warnings: &'a [String],
+}
+
+/// A way that was tried.
+#[derive(Serialize)]
+struct Trial {
+    method: &'static str,
+    way: String,
+    /// RMSE against many rays at some of the points, a share of their mean.
+    error: f64,
+}
+
+/// The result after edits.
+#[derive(Serialize)]
+pub struct Update<'a> {
+    /// What was done, as it was typed.
+    pub edits: Vec<String>,
+    /// How many parts it concerned, and how many triangles they have.
+    pub parts: usize,
+    pub triangles: usize,
+    /// How many points there are, and how many were asked again.
+    pub count: usize,
+    pub again: usize,
+    /// How long this took, and how long the first result, the map of the sky taken out.
+    pub seconds: f64,
+    pub full_seconds: f64,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: Found<'a>,
 }
 
 /// One row a sensor; of other places a summary.
@@ -73,9 +108,6 @@ struct Summary {
     places: String,
     count: usize,
     in_solid: usize,
-    /// Suns that a point looked at; `None` for all.
-    sun_rays: Option<u32>,
-    sky_rays: u32,
     /// Root of the mean squared standard error of a point, kWh/m2.
     error: f64,
     values: BTreeMap<&'static str, Spread>,
@@ -116,14 +148,7 @@ impl Spread {
 
 impl<'a> Found<'a> {
     /// What was found at places, and the files it was written to.
-    pub fn new(
-        scene: &'a Scene,
-        at: At,
-        places: &Places,
-        found: &[Exposure],
-        casting: Casting,
-        files: &[String],
-    ) -> Self {
+    pub fn new(scene: &'a Scene, at: At, places: &Places, found: &[Exposure], files: &[String]) -> Self {
         if at == At::Sensors {
             let rows = scene.sensors.iter().zip(found).map(|(sensor, found)| Row::new(&sensor.id, found)).collect();
             return Self { sensors: Some(rows), points: None };
@@ -139,8 +164,6 @@ impl<'a> Found<'a> {
             places: places.words(),
             count: found.len(),
             in_solid: found.iter().filter(|exposure| exposure.status == Status::InSolid).count(),
-            sun_rays: casting.sun_rays,
-            sky_rays: casting.sky_rays,
             error: (squares / valued().count().max(1) as f64).sqrt(),
             values: Quantity::ALL.map(spread).into(),
             files: files.to_vec(),
@@ -163,6 +186,33 @@ impl<'a> Found<'a> {
     }
 }
 
+impl Trial {
+    fn new(tried: &Tried) -> Self {
+        Self { method: tried.way.name(), way: tried.way.words(), error: tried.error }
+    }
+
+    fn text(&self) -> String {
+        format!("tried {}: {:.1}% off\n", self.way, 100.0 * self.error)
+    }
+}
+
+impl Update<'_> {
+    fn text(&self) -> String {
+        format!(
+            "\nafter {}: {} parts, {} triangles; {} of {} points asked again\n\
+             in {:.3} s, where all of it takes {:.3} s\n\n{}",
+            self.edits.join(", "),
+            self.parts,
+            self.triangles,
+            self.again,
+            self.count,
+            self.seconds,
+            self.full_seconds,
+            self.found.text()
+        )
+    }
+}
+
 impl Summary {
     fn text(&self) -> String {
         let mut table = Table::new(["", "mean", "min", "5%", "25%", "50%", "75%", "95%", "max"]);
@@ -173,14 +223,10 @@ impl Summary {
             let values = [mean, min, p5, p25, p50, p75, p95, max].map(|value| format!("{value:.places$}"));
             table.row(std::iter::once(quantity.name().to_owned()).chain(values).collect());
         }
-        let suns = self.sun_rays.map_or("every sun".to_owned(), |count| format!("{count} suns"));
         let mean = self.values.get(Quantity::Total.name()).map_or(0.0, |total| total.mean);
         let share = if mean > 0.0 { format!(", {:.1}% of the mean", 100.0 * self.error / mean) } else { String::new() };
         let within = if self.in_solid > 0 { format!("; {} lie inside matter", self.in_solid) } else { String::new() };
-        format!(
-            "{}{within}\neach by {suns} and {} directions of the sky; standard error of a point {:.1} kWh/m2{share}\n\n{table}",
-            self.places, self.sky_rays, self.error
-        )
+        format!("{}{within}\nstandard error of a point {:.1} kWh/m2{share}\n\n{table}", self.places, self.error)
     }
 }
 
@@ -191,31 +237,39 @@ impl<'a> Report<'a> {
         at: At,
         map: &ExposureMap,
         seconds: f64,
+        chosen: &Chosen,
         found: Found<'a>,
+        update: Option<Update<'a>>,
         warnings: &'a [String],
     ) -> Self {
         Self {
             scene: &scene.name,
             seconds,
-            method: "rays",
+            method: chosen.way.way.name(),
+            way: chosen.way.way.words(),
+            tried: chosen.tried.iter().map(Trial::new).collect(),
             ghi: map.totals.ghi_kwh_m2,
             dni: map.totals.dni_kwh_m2,
             dhi: map.totals.dhi_kwh_m2,
             at: (at != At::Sensors).then(|| at.name()),
             found,
+            update,
             warnings,
         }
     }
 
     /// The report for a reader.
     pub fn text(&self) -> String {
+        let tried: String = self.tried.iter().map(Trial::text).collect();
+        let update = self.update.as_ref().map_or_else(String::new, Update::text);
         format!(
             "{}: kWh/m2 over the period; global horizontal {:.0}, direct normal {:.0}, diffuse horizontal {:.0}\n\
-             by rays in {:.2} s; what surfaces reflect is not in it\n\n{}",
+             by {} in {:.2} s; what surfaces reflect is not in it\n{tried}\n{}{update}",
             self.scene,
             self.ghi,
             self.dni,
             self.dhi,
+            self.way,
             self.seconds,
             self.found.text()
         )

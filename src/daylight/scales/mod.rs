@@ -12,13 +12,14 @@ pub mod sight;
 pub mod sums;
 pub mod zenith;
 
+use super::cast::Asked;
 use super::{Exposure, Point};
 use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::Status;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
-use sight::{Overhangs, Rings, bands};
+use sight::{Overhangs, Rings, bands, sine_of_slope};
 use std::f32::consts::{PI, TAU};
 use sums::{Piece, SkySums};
 use zenith::Zenith;
@@ -76,26 +77,27 @@ impl Seer {
 pub fn expose(
     zenith: &Zenith,
     sums: &SkySums,
-    points: &[Point],
+    asked: Asked,
     scan: &Scan,
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<Exposure>, Cancelled> {
     /// Points between looks at the clock of the progress bar.
     const CHUNK: usize = 256;
-    progress.begin("maps", points.len() as u64);
+    progress.begin("maps", asked.points.len() as u64);
     let farthest_m = zenith.farthest_m();
     let reach_m = scan.reach_m.unwrap_or(farthest_m).min(farthest_m);
     let rings: Vec<Rings> = (0..sums.turns)
         .map(|turn| Rings::new(zenith, scan.samples, reach_m, (turn as f32 + 0.5) / sums.turns as f32))
         .collect();
-    let chunks: Result<Vec<Vec<Exposure>>, Cancelled> = points
+    let chunks: Result<Vec<Vec<Exposure>>, Cancelled> = asked
+        .points
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, some)| {
             cancel.check()?;
             let exposure = |(index, point): (usize, &Point)| {
-                let [random, _] = sequence::offset(scan.seed, OFFSETS + (chunk * CHUNK + index) as u64);
+                let [random, _] = sequence::offset(scan.seed, OFFSETS + asked.number(chunk * CHUNK + index));
                 at_point(zenith, sums, &rings, scan.overhangs, point, random as f32)
             };
             let exposures = some.iter().enumerate().map(exposure).collect();
@@ -105,6 +107,21 @@ pub fn expose(
         .collect();
     progress.end();
     Ok(chunks?.concat())
+}
+
+/// What a plane in the open receives, with nothing in its way.
+pub fn in_the_open(sums: &SkySums, normal: Option<Vec3>) -> Exposure {
+    let mut received = Received::default();
+    for direction in 0..sums.directions {
+        let turn = turn_of(sums.directions, sums.turns, normal.unwrap_or(Vec3::Z), 0.0);
+        let (sine, cosine) = (sums.azimuth_rad(direction, turn) as f32).sin_cos();
+        let along = Vec2::new(sine, cosine);
+        if let Some([from, to]) = before_plane(normal, along) {
+            let above = |slope: f32| sums.above(direction, turn, sine_of_slope(slope));
+            received.add(&above(from.max(0.0)).without(&above(to)), normal, along);
+        }
+    }
+    received.exposure()
 }
 
 fn at_point(
@@ -132,16 +149,8 @@ fn at_point(
         });
     }
     let [even, odd] = halves;
-    let both = even.and(&odd);
-    let mut exposure = Exposure::none(Status::Dark);
-    (exposure.sky_kwh_m2, exposure.beam_kwh_m2) = (f64::from(both.sky_kwh_m2), f64::from(both.beam_kwh_m2));
-    exposure.svf = f64::from(both.svf).clamp(0.0, 1.0);
-    exposure.sun_h = f64::from(both.sun_h);
-    exposure.error_kwh_m2 = f64::from((even.kwh_m2() - odd.kwh_m2()).abs() / 2.0);
-    if exposure.total_kwh_m2() > 0.0 {
-        exposure.status = Status::Ok;
-    }
-    exposure
+    let error_kwh_m2 = f64::from((even.kwh_m2() - odd.kwh_m2()).abs() / 2.0);
+    Exposure { error_kwh_m2, ..even.and(&odd).exposure() }
 }
 
 /// How a point is turned: a wall so that its plane lies between two directions, anything else by a number from 0 to 1.
@@ -202,6 +211,17 @@ impl Received {
             beam_kwh_m2: self.beam_kwh_m2 + other.beam_kwh_m2,
             svf: self.svf + other.svf,
             sun_h: self.sun_h + other.sun_h,
+        }
+    }
+
+    fn exposure(&self) -> Exposure {
+        let status = if self.kwh_m2() > 0.0 { Status::Ok } else { Status::Dark };
+        Exposure {
+            beam_kwh_m2: f64::from(self.beam_kwh_m2),
+            sky_kwh_m2: f64::from(self.sky_kwh_m2),
+            svf: f64::from(self.svf).clamp(0.0, 1.0),
+            sun_h: f64::from(self.sun_h),
+            ..Exposure::none(status)
         }
     }
 

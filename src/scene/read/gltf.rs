@@ -8,7 +8,7 @@
 //! metres with Y up.
 
 use super::accessor::{Buffers, read_indices, read_positions};
-use super::{MOST_EMISSION, RawMaterial, RawMesh, check_vertices, luminance};
+use super::{MOST_EMISSION, RawMaterial, RawMesh, check_vertices, luminance, part};
 use crate::scene::error::{Kind, SceneError};
 use crate::scene::input::{Input, counted, without_mark};
 use ::gltf::json::validation::Checked;
@@ -66,7 +66,7 @@ fn read_nodes(
     mesh: &mut RawMesh,
 ) -> Result<PassedOver, SceneError> {
     let mut passed_over = PassedOver::default();
-    let mut names = HashMap::new();
+    let (mut names, mut parts) = (HashMap::new(), HashMap::new());
 
     // The tree of nodes is walked with a stack of our own: a deep one would overflow that of the program.
     let mut visited = vec![false; document.nodes().len()];
@@ -97,6 +97,10 @@ fn read_nodes(
             });
             read_primitive(input, buffers, &primitive, to_world, material, mesh)?;
         }
+        // Nodes without a name of their own are told apart by their number: each is placed alone.
+        let name = node.name().map_or_else(|| format!("node{}", node.index()), str::to_owned);
+        let number = part(&mut mesh.parts, &mut parts, &name);
+        mesh.part_of.resize(mesh.triangles.len(), number);
     }
     Ok(passed_over)
 }

@@ -39,10 +39,25 @@ pub struct RawMesh {
     pub material_of: Vec<u32>,
     /// Materials of the file.
     pub materials: Vec<RawMaterial>,
+    /// Names of the parts that the file has, as objects, groups or nodes; empty where it knows of none.
+    pub parts: Vec<String>,
+    /// Part of each triangle, in range; empty where the file knows of none.
+    pub part_of: Vec<u32>,
     /// Faces with fewer than three corners, left out already.
     pub too_few_corners: usize,
     /// What the reader mended or left out, a sentence each, without the file's name.
     pub warnings: Vec<String>,
+}
+
+/// Number of the part of that name, a new one if there is none yet. Cost: `known` holds the numbers by name.
+fn part(parts: &mut Vec<String>, known: &mut std::collections::HashMap<String, u32>, name: &str) -> u32 {
+    if let Some(&number) = known.get(name) {
+        return number;
+    }
+    let number = parts.len() as u32;
+    parts.push(name.to_owned());
+    known.insert(name.to_owned(), number);
+    number
 }
 
 /// A material as its file gives it.

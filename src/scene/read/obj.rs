@@ -6,7 +6,7 @@
 //! passed over. A face may only use vertices above it in the file.
 
 use super::polygon::{Cut, tangled, triangulate};
-use super::{RawMesh, check_vertices, mtl};
+use super::{RawMesh, check_vertices, mtl, part as numbered};
 use crate::job::Quiet;
 use crate::scene::error::{Kind, SceneError};
 use crate::scene::input::{Input, Lines, counted, next_triple, shown, text, without_mark, words};
@@ -26,10 +26,10 @@ const PASSED_OVER: [&[u8]; 9] = [b"vt", b"vn", b"vp", b"s", b"l", b"p", b"cstype
 /// vertex, a broken material file. A file without faces is an empty mesh, not an error here.
 pub fn read_obj(input: &Input) -> Result<RawMesh, SceneError> {
     let mut mesh = RawMesh::default();
-    let mut names = HashMap::new();
+    let (mut names, mut parts) = (HashMap::new(), HashMap::new());
     let mut library = HashMap::new();
     let (mut material, mut part) = (String::new(), input.stem());
-    let (mut current, mut corners) = (None, Vec::new());
+    let (mut current, mut current_part, mut corners) = (None, None, Vec::new());
     let (mut unknown, mut crossing) = (0_usize, 0_usize);
 
     let mut stage = input.parse();
@@ -71,11 +71,14 @@ pub fn read_obj(input: &Input) -> Result<RawMesh, SceneError> {
                     Cut::Crossing => crossing += 1,
                 }
                 mesh.material_of.resize(mesh.triangles.len(), number);
+                let number = *current_part.get_or_insert_with(|| numbered(&mut mesh.parts, &mut parts, &part));
+                mesh.part_of.resize(mesh.triangles.len(), number);
             }
             Some(b"usemtl") => (material, current) = (name_after(&line, b"usemtl"), None),
             Some(word @ (b"o" | b"g")) => {
                 let name = name_after(&line, word);
-                (part, current) = (if name.is_empty() { input.stem() } else { name }, None);
+                part = if name.is_empty() { input.stem() } else { name };
+                (current, current_part) = (None, None);
             }
             Some(b"mtllib") => read_libraries(input, &name_after(&line, b"mtllib"), &mut library, &mut mesh.warnings)?,
             Some(word) if word.starts_with(b"#") || PASSED_OVER.contains(&word) => {}

@@ -19,7 +19,7 @@ use super::sums::{ROWS, SkySums};
 use super::{before_plane, turn_of};
 use crate::daylight::camera::Buffers;
 use crate::job::{Cancel, Cancelled};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use taps::{JITTERS, Taps};
@@ -60,13 +60,29 @@ pub struct Look {
     pub smooth: bool,
 }
 
-/// What the pixels of a view receive, rows from the top; 0 where nothing is hit.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Seen {
-    /// From sun and sky, kWh/m2.
-    pub total_kwh_m2: Vec<f32>,
+/// What a pixel receives; nothing where nothing is hit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Received {
+    /// From what was asked for, kWh/m2.
+    pub total_kwh_m2: f32,
     /// Sky view factor.
-    pub svf: Vec<f32>,
+    pub svf: f32,
+    /// Hours of sun.
+    pub sun_h: f32,
+}
+
+impl Received {
+    fn and(self, other: Self) -> Self {
+        Self {
+            total_kwh_m2: self.total_kwh_m2 + other.total_kwh_m2,
+            svf: self.svf + other.svf,
+            sun_h: self.sun_h + other.sun_h,
+        }
+    }
+
+    fn times(self, share: f32) -> Self {
+        Self { total_kwh_m2: share * self.total_kwh_m2, svf: share * self.svf, sun_h: share * self.sun_h }
+    }
 }
 
 /// A view's surfaces in the scene.
@@ -115,12 +131,23 @@ impl Surfaces {
     }
 }
 
-/// The sums of a sky as pixels read them: sun and sky together.
+/// What of the light is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// From the sky.
+    Sky,
+    /// From the suns.
+    Beam,
+    /// From both.
+    All,
+}
+
+/// The sums of a sky as pixels read them.
 #[derive(Debug, Clone)]
 pub struct PixelSums {
     directions: usize,
-    /// For each sector, turns of a direction in a row, the energy times direction above each row, kWh/m2.
-    above: Vec<[f32; 4]>,
+    /// For each sector, turns of a direction in a row, above each row the energy times direction, kWh/m2, and the hours of sun.
+    above: Vec<Vec4>,
     /// The cosine-weighted solid angle above each row for a level plane and for an upright one that faces it, sr.
     level_upright_sr: Vec<[f32; 2]>,
     /// Unit vectors of each sector's middle.
@@ -132,7 +159,7 @@ pub const TURNS: usize = TILE * TILE;
 
 impl PixelSums {
     /// From sums that have [`TURNS`] turns and at most [`MOST_DIRECTIONS`] directions; `None` for others.
-    pub fn new(sums: &SkySums) -> Option<Self> {
+    pub fn new(sums: &SkySums, part: Part) -> Option<Self> {
         if sums.turns != TURNS || sums.directions > MOST_DIRECTIONS {
             return None;
         }
@@ -141,8 +168,12 @@ impl PixelSums {
         let above = sectors().flat_map(|(direction, turn)| {
             (0..=ROWS).map(move |row| {
                 let piece = sums.above(direction, turn, at(row));
-                let [x, y, z] = std::array::from_fn(|axis| piece.sky_kwh_m2[axis] + piece.beam_kwh_m2[axis]);
-                [x, y, z, 0.0]
+                let [x, y, z] = match part {
+                    Part::Sky => piece.sky_kwh_m2,
+                    Part::Beam => piece.beam_kwh_m2,
+                    Part::All => std::array::from_fn(|axis| piece.sky_kwh_m2[axis] + piece.beam_kwh_m2[axis]),
+                };
+                Vec4::new(x, y, z, piece.sun_h)
             })
         });
         let of_plane = |row: usize| {
@@ -161,9 +192,10 @@ impl PixelSums {
         })
     }
 
-    /// Energy times direction, and the solid angles of a level and an upright plane, between two sines of elevation.
+    /// Energy times direction with the hours of sun, and the solid angles of a level and an upright plane, between two sines of
+    /// elevation.
     #[inline]
-    fn between(&self, sector: usize, low: f32, high: f32) -> (Vec3, [f32; 2]) {
+    fn between(&self, sector: usize, low: f32, high: f32) -> (Vec4, [f32; 2]) {
         let (energy, plane) = self.above(sector, low);
         if high >= 1.0 {
             return (energy, plane);
@@ -173,21 +205,20 @@ impl PixelSums {
     }
 
     #[inline]
-    fn above(&self, sector: usize, sine: f32) -> (Vec3, [f32; 2]) {
+    fn above(&self, sector: usize, sine: f32) -> (Vec4, [f32; 2]) {
         let at = sine.clamp(0.0, 1.0) * ROWS as f32;
         let row = (at as usize).min(ROWS - 1);
         let part = at - row as f32;
         let first = sector * (ROWS + 1) + row;
         let (Some([a, b]), Some([c, d])) = (self.above.get(first..first + 2), self.level_upright_sr.get(row..row + 2))
         else {
-            return (Vec3::ZERO, [0.0; 2]);
+            return (Vec4::ZERO, [0.0; 2]);
         };
-        let mix = |a: f32, b: f32| a + part * (b - a);
-        (Vec3::new(mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2])), [mix(c[0], d[0]), mix(c[1], d[1])])
+        (*a + part * (*b - *a), [c[0] + part * (d[0] - c[0]), c[1] + part * (d[1] - c[1])])
     }
 }
 
-/// What each pixel receives. The same bits for any number of threads.
+/// What each pixel receives, rows from the top. The same bits for any number of threads.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -197,44 +228,40 @@ pub fn see(
     surfaces: &Surfaces,
     look: &Look,
     cancel: &Cancel,
-) -> Result<Seen, Cancelled> {
+) -> Result<Vec<Received>, Cancelled> {
     /// Rows between looks at whether to stop.
     const ROWS_AT_ONCE: usize = 8;
     let [width, height] = surfaces.size;
-    let mut seen = Seen { total_kwh_m2: vec![0.0; width * height], svf: vec![0.0; width * height] };
+    let mut seen = vec![Received::default(); width * height];
     let steps = fine::Steps::new(surfaces, sums.directions, look);
-    let chunk = ROWS_AT_ONCE * width;
-    seen.total_kwh_m2.par_chunks_mut(chunk).zip(seen.svf.par_chunks_mut(chunk)).enumerate().try_for_each(
-        |(number, (totals, svfs))| {
-            cancel.check()?;
-            for (off, (total, svf)) in totals.iter_mut().zip(svfs).enumerate() {
-                let pixel = number * chunk + off;
-                if surfaces.positions_m[0][pixel].is_nan() {
-                    continue;
-                }
-                (*total, *svf) = match look.combination {
-                    Combination::Intersected => {
-                        at_pixel(taps, sums, surfaces, pixel, look, |turn| Some(steps.covered(surfaces, pixel, turn)))
-                    }
-                    _ => at_pixel(taps, sums, surfaces, pixel, look, |_| None),
-                };
+    let chunk = ROWS_AT_ONCE * width.max(1);
+    seen.par_chunks_mut(chunk).enumerate().try_for_each(|(number, some)| {
+        cancel.check()?;
+        for (off, received) in some.iter_mut().enumerate() {
+            let pixel = number * chunk + off;
+            if surfaces.positions_m[0][pixel].is_nan() {
+                continue;
             }
-            Ok(())
-        },
-    )?;
+            *received = match look.combination {
+                Combination::Intersected => {
+                    at_pixel(taps, sums, surfaces, pixel, look, |turn| Some(steps.covered(surfaces, pixel, turn)))
+                }
+                _ => at_pixel(taps, sums, surfaces, pixel, look, |_| None),
+            };
+        }
+        Ok(())
+    })?;
     if look.combination == Combination::Weighted {
         let visible = steps.visible(surfaces, cancel)?;
-        for values in [&mut seen.total_kwh_m2, &mut seen.svf] {
-            values.iter_mut().zip(&visible).for_each(|(value, visible)| *value *= visible);
-        }
+        seen.iter_mut().zip(&visible).for_each(|(received, visible)| *received = received.times(*visible));
     }
-    if look.smooth { Ok(smooth::smoothed(seen, surfaces)) } else { Ok(seen) }
+    if look.smooth { Ok(smooth::smoothed(&seen, surfaces)) } else { Ok(seen) }
 }
 
 /// The elevations that the fine scale covers in each direction, evenly by their sine.
 pub type Covered = [u64; MOST_DIRECTIONS];
 
-/// Exposure and sky view factor of one pixel; `covered` is asked for how the pixel is turned.
+/// What one pixel receives; `covered` is asked for how the pixel is turned.
 #[inline]
 fn at_pixel(
     taps: &Taps,
@@ -243,14 +270,14 @@ fn at_pixel(
     pixel: usize,
     look: &Look,
     covered: impl FnOnce(usize) -> Option<Covered>,
-) -> (f32, f32) {
+) -> Received {
     let (column, row) = (pixel % surfaces.size[0], pixel / surfaces.size[0]);
     let tile = column % TILE + TILE * (row % TILE);
     let (position_m, normal) = (surfaces.position_m(pixel), surfaces.normal(pixel));
     let turn = turn_of(sums.directions, TURNS, normal, SPREAD[tile] as f32 / TURNS as f32);
     let place = taps.place(position_m, normal, look.opening);
     let covered = covered(turn);
-    let (mut total, mut svf) = (0.0, 0.0);
+    let mut received = Received::default();
     for direction in 0..sums.directions {
         let sector = direction * TURNS + turn;
         let along = sums.along.get(sector).copied().unwrap_or(Vec2::X);
@@ -263,15 +290,16 @@ fn at_pixel(
         let across = normal.truncate().dot(along);
         let mut add = |low: f32, high: f32| {
             let (energy, [level_sr, upright_sr]) = sums.between(sector, low, high);
-            total += normal.dot(energy).max(0.0);
-            svf += (normal.z * level_sr + across * upright_sr).max(0.0) / PI;
+            received.total_kwh_m2 += normal.dot(energy.truncate()).max(0.0);
+            received.svf += (normal.z * level_sr + across * upright_sr).max(0.0) / PI;
+            received.sun_h += energy.w;
         };
         match &covered {
             None => add(low, high),
             Some(covered) => each_open(!covered[direction], low, high, |band| add(band.low, band.high)),
         }
     }
-    (total, svf)
+    received
 }
 
 /// The turns of the pixels of a tile: neighbours far from each other (Bayer's order).
