@@ -2,7 +2,7 @@
 //!
 //!     cargo bench --bench faces [-- MOST_THOUSANDS]
 //!
-//! A made city of 300 x 300 m with 4,000 to 800,000 faces (or up to so many thousands): always the same 144 houses, of 8 to
+//! A made city of 300 x 300 m with 7,000 to 770,000 faces (or up to about so many thousands): always the same 144 houses, of 8 to
 //! 26 m, and on their walls and roofs ever smaller boxes, so that what is seen of the sky hardly changes. 10,000 points, the
 //! same in all of them, half a metre before walls, over roofs and over the ground. For each: the time that is needed before
 //! the first point (the rays' tree; the zenith's depth map), points a second by rays (256 suns, 256 directions) and by maps
