@@ -2,7 +2,7 @@
 //!
 //!     cargo bench --bench faces [-- MOST_THOUSANDS]
 //!
-//! A made city of 300 x 300 m with 4,000 to 800,000 faces (or up to so many thousands): always the same 144 houses, of 8 to
+//! A made city of 300 x 300 m with 7,000 to 770,000 faces (or up to about so many thousands): always the same 144 houses, of 8 to
 //! 26 m, and on their walls and roofs ever smaller boxes, so that what is seen of the sky hardly changes. 10,000 points, the
 //! same in all of them, half a metre before walls, over roofs and over the ground. For each: the time that is needed before
 //! the first point (the rays' tree; the zenith's depth map), points a second by rays (256 suns, 256 directions) and by maps
@@ -10,7 +10,7 @@
 //! degrees north.
 
 use glam::Vec3;
-use lightvein::daylight::cast::{Casting, cast};
+use lightvein::daylight::cast::{Asked, Casting, cast};
 use lightvein::daylight::scales::sight::Overhangs;
 use lightvein::daylight::scales::sums::SkySums;
 use lightvein::daylight::scales::zenith::Zenith;
@@ -64,7 +64,8 @@ fn main() {
         let (rays_s, by_rays) = median(|| cast(&rays, &points, &map, 0.0, casting, &Quiet, &Cancel::new()).unwrap());
         let (depths_s, zenith) = median(|| Zenith::new(&scene, 1024, true, &Cancel::new()).unwrap());
         let scan = Scan { samples: 16, reach_m: None, overhangs: Overhangs::Peeled, seed: 0 };
-        let (maps_s, by_maps) = median(|| expose(&zenith, &sums, &points, &scan, &Quiet, &Cancel::new()).unwrap());
+        let (maps_s, by_maps) =
+            median(|| expose(&zenith, &sums, Asked::all(&points), &scan, &Quiet, &Cancel::new()).unwrap());
         println!(
             "{:>8} {:>9.1} {:>10.0} {:>7.4} {:>11.1} {:>10.0} {:>7.4}",
             scene.mesh.triangles.len(),
