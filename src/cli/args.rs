@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use super::daylight::DaylightArgs;
 use super::expose::ExposeArgs;
 use super::sky::args::SkyArgs;
 use crate::scene::Method;
@@ -74,6 +75,8 @@ pub enum Command {
     Sky(SkyArgs),
     /// What the sensors receive from sun and sky over a period, by rays; without what surfaces reflect
     Expose(ExposeArgs),
+    /// The same with what surfaces reflect, and in rooms; daylight factor and illuminance
+    Daylight(DaylightArgs),
 }
 
 /// What `stress` takes.

@@ -5,6 +5,7 @@
 
 mod args;
 mod chart;
+mod daylight;
 mod expose;
 mod peer;
 mod plan;

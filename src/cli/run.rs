@@ -2,6 +2,7 @@
 
 use super::args::{Args, Command, Common};
 use super::chart;
+use super::daylight;
 use super::expose;
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
@@ -43,6 +44,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
         Command::Stress(args) => stress::run(&args, cancel),
         Command::Sky(args) => sky::run(&args, cancel),
         Command::Expose(args) => expose::run(&args, cancel),
+        Command::Daylight(args) => daylight::run(&args, cancel),
     }
 }
 

@@ -133,14 +133,16 @@ pub(super) fn stands_at(rays: &Rays, point: &Point) -> Vec3 {
 }
 
 /// The sky of a map, by directions of the scene.
-struct Sky<'a> {
-    map: &'a ExposureMap,
-    north_rad: f64,
+pub(super) struct Sky<'a> {
+    /// The period's energies.
+    pub(super) map: &'a ExposureMap,
+    /// Direction of true north, clockwise from the scene's +Y.
+    pub(super) north_rad: f64,
 }
 
 impl Sky<'_> {
     /// The period's energy from a direction, kWh/m2/sr; 0 from below the horizon.
-    fn radiance_kwh_m2_sr(&self, direction: DVec3) -> f64 {
+    pub(super) fn radiance_kwh_m2_sr(&self, direction: DVec3) -> f64 {
         if direction.z <= 0.0 {
             return 0.0;
         }

@@ -2,9 +2,8 @@
 //!
 //! [`Exposure`] is the answer at a sensor: the beam of the sun, the light of the sky, how much of the sky is seen. [`cast`]
 //! finds it by rays, to every sun or to some, and to as many directions of the sky as are asked for: with all of them the
-//! truth that faster ways are held to.
-//!
-//! Limits: what surfaces and the ground send back is not in it yet; `reflected` is 0.
+//! truth that faster ways are held to. What surfaces reflect, and with it what comes into rooms round corners, is found by
+//! [`reflect`] through the skeleton; without it `reflected` is 0.
 
 pub mod beams;
 pub mod camera;
@@ -12,6 +11,7 @@ pub mod cast;
 pub mod choose;
 pub mod dynamic;
 mod quantity;
+pub mod reflect;
 pub mod scales;
 pub mod surface;
 pub mod way;

@@ -5,6 +5,7 @@
 
 pub mod chart;
 pub mod curves;
+pub mod daylight;
 pub mod exposure;
 pub mod exposures;
 pub mod field;

@@ -8,17 +8,19 @@
 //! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
 //!
 //! [`hosek`] is the brightness of a clear sky by direction, in RGB and by band, [`spectrum`] what beam and sky bring by
-//! wavelength, [`disc`] how the beam is spread over the sun, [`colour`] the sky's colour, [`picture`] a fisheye of it all.
+//! wavelength, [`efficacy`] how much of it the eye sees, [`disc`] how the beam is spread over the sun, [`colour`] the sky's colour, [`picture`] a fisheye of it all.
 
 pub mod clear;
 pub mod colour;
 pub mod disc;
 pub mod dome;
+pub mod efficacy;
 pub mod events;
 pub mod facade;
 pub mod hosek;
 pub mod lit;
 pub mod map;
+pub mod moment;
 pub mod perez;
 pub mod picture;
 pub mod simple_sun;

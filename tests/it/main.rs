@@ -56,6 +56,9 @@ mod exposure;
 /// What surfaces receive of sun and sky.
 mod daylight;
 
+/// What surfaces reflect of sun and sky.
+mod reflected;
+
 /// Exposure by latitude and turbidity, as physics and the paper have it.
 mod exposure_trends;
 
@@ -70,3 +73,6 @@ mod views;
 
 /// Parts of a scene moved, scaled or hidden.
 mod dynamic;
+
+/// Exposure by maps, at one scale and at two.
+mod scales;

@@ -20,7 +20,6 @@ use crate::rays::Rays;
 use crate::scene::Scene;
 use crate::sky::map::{ExposureMap, MapSettings};
 use crate::sky::site::Outdoors;
-use crate::sky::weather::Weather;
 use anyhow::{Context, Result};
 use args::At;
 pub use args::ExposeArgs;
@@ -39,7 +38,7 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
     let mut folder = args.output.as_deref().map(Folder::new).transpose()?;
     start_threads(args.flags.threads.map(usize::from))?;
     let mut scene = Scene::load(&args.scene, &stages, cancel)?;
-    let outdoors = outdoors(args, &mut scene, &stages, cancel)?;
+    let outdoors = args.site.outdoors(&mut scene, &args.scene, &stages, cancel)?;
     let at = places::at(args, &scene)?;
     let camera = places::camera(args, at, &scene)?;
     let edits = args.edits.all();
@@ -135,16 +134,4 @@ fn titles(args: &ExposeArgs, scene: &Scene, outdoors: &Outdoors, map: &ExposureM
         totals.dhi_kwh_m2
     );
     (format!("{}: {}", scene.name, args.show.title()), note)
-}
-
-/// Where the scene stands, its weather read.
-fn outdoors(args: &ExposeArgs, scene: &mut Scene, stages: &Stages, cancel: &Cancel) -> Result<Outdoors> {
-    let site = args.site.over(scene.site.take().unwrap_or_default());
-    let weather = site.weather.as_deref().map(|path| Weather::load(path, stages, cancel)).transpose()?;
-    if let Some(weather) = &weather {
-        scene.warnings.extend(weather.warnings.iter().cloned());
-    }
-    let mut outdoors = Outdoors::of(&site, weather).with_context(|| args.scene.display().to_string())?;
-    outdoors.model = args.site.model.unwrap_or(outdoors.model);
-    Ok(outdoors)
 }

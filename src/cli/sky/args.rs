@@ -1,12 +1,16 @@
 //! What can be typed after `sky`.
 
-use crate::scene::Site;
+use crate::cli::stages::Stages;
+use crate::job::Cancel;
+use crate::scene::{Scene, Site};
 use crate::sky::dome::SkyModel;
-use crate::sky::site::ClearSky;
+use crate::sky::site::{ClearSky, Outdoors};
 use crate::sky::spectrum::Band;
+use crate::sky::weather::Weather;
+use anyhow::{Context, Result};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use jiff::civil::{Date, Time};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What `sky` takes.
 #[derive(Debug, clap::Args)]
@@ -116,6 +120,23 @@ impl SiteArgs {
     }
 }
 
+impl SiteArgs {
+    /// Where a scene stands, its weather read; what the weather warns of goes to the scene's warnings.
+    ///
+    /// # Errors
+    /// Broken weather, or a place that neither the scene nor the weather nor the command line names.
+    pub fn outdoors(&self, scene: &mut Scene, path: &Path, stages: &Stages, cancel: &Cancel) -> Result<Outdoors> {
+        let site = self.over(scene.site.take().unwrap_or_default());
+        let weather = site.weather.as_deref().map(|path| Weather::load(path, stages, cancel)).transpose()?;
+        if let Some(weather) = &weather {
+            scene.warnings.extend(weather.warnings.iter().cloned());
+        }
+        let mut outdoors = Outdoors::of(&site, weather).with_context(|| path.display().to_string())?;
+        outdoors.model = self.model.unwrap_or(outdoors.model);
+        Ok(outdoors)
+    }
+}
+
 impl SkyArgs {
     /// A site with what was typed written over it.
     pub fn over(&self, site: Site) -> Site {
@@ -139,12 +160,14 @@ fn step_min(text: &str) -> Result<f64, String> {
     within(text, 1.0, 1440.0)
 }
 
-fn date(text: &str) -> Result<Date, String> {
+/// A day YYYY-MM-DD.
+pub fn date(text: &str) -> Result<Date, String> {
     let date: Date = text.parse().map_err(|_| "not a day YYYY-MM-DD of the calendar".to_owned())?;
     if (1..=3000).contains(&date.year()) { Ok(date) } else { Err("the year is outside 1 to 3000".to_owned()) }
 }
 
-fn time(text: &str) -> Result<Time, String> {
+/// A time HH:MM.
+pub fn time(text: &str) -> Result<Time, String> {
     Time::strptime("%H:%M", text).map_err(|_| "not a time HH:MM, 00:00 to 23:59".to_owned())
 }
 

@@ -184,6 +184,12 @@ impl<'a> Grounds<'a> {
         Self { model, zones, patches, portals, farthest_m }
     }
 
+    /// The same with a patch for every wall of a cell that has any ([`Patches::fill_gaps`]).
+    pub fn filled(mut self) -> Self {
+        self.patches.fill_gaps(&self.zones);
+        self
+    }
+
     /// The patch of a place on a wall that a ray of that length came to along `direction`.
     fn patch_at(&self, at: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
         self.patches.at(self.model, &self.zones, at, direction, length_m)
@@ -222,11 +228,31 @@ impl<'a> Network<'a> {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<(Self, Vec<Line>), Cancelled> {
+        let of_lamps = |grounds: &Grounds| {
+            let promised = landing::promised(grounds);
+            let of = |shining| landing(grounds, quality, shining, &promised, settings.seed);
+            Ok(model.shining.iter().map(of).collect())
+        };
         progress.begin("zones", 0);
         let grounds = Grounds::new(model, quality, settings.seed);
         progress.end();
         cancel.check()?;
+        Self::lit_by(grounds, quality, settings, &of_lamps, progress, cancel)
+    }
 
+    /// The same for light from elsewhere: `land` says what lands straight on each patch, a landing a source. The unit is the
+    /// caller's: energies for fluxes, W, give energies per area for irradiances, W/m2.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `cancel` was raised.
+    pub fn lit_by(
+        grounds: Grounds<'a>,
+        quality: &Quality,
+        settings: &Settings,
+        land: &dyn Fn(&Grounds) -> Result<Vec<Landing>, Cancelled>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> Result<(Self, Vec<Line>), Cancelled> {
         progress.begin("lines", 0);
         let lines = lines::lines(&grounds, quality, settings.seed);
         let patches = grounds.patches.list.len();
@@ -237,9 +263,7 @@ impl<'a> Network<'a> {
         cancel.check()?;
 
         progress.begin("landing", 0);
-        let promised = landing::promised(&grounds);
-        let of = |shining| landing(&grounds, quality, shining, &promised, settings.seed);
-        let landings: Vec<Landing> = model.shining.iter().map(of).collect();
+        let landings = land(&grounds)?;
         progress.end();
         cancel.check()?;
 
@@ -261,7 +285,7 @@ impl<'a> Network<'a> {
         let exchange = exchanges.into_iter().next().unwrap_or_default();
         let variants_w_m2 = [odd, even, coarse];
         progress.end();
-        let lit = lit(model);
+        let lit = lit(grounds.model);
         let warnings = balance::without_end(&exchange, &reflectances, &all_w).then(|| NOTHING_ABSORBS.to_owned());
         let warnings = warnings.into_iter().collect();
         Ok((Self { grounds, exchange, landings, reflected_w_m2, variants_w_m2, lit, warnings }, lines))

@@ -12,7 +12,7 @@ use crate::flow::sequence;
 use crate::model::Model;
 use crate::model::walls::{Answer, WallPoint};
 use crate::space::VoxelIndex;
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Quat, Vec3};
 use rayon::prelude::*;
 
 /// Orientations of walls that reflect, then of panes, then of black ones.
@@ -36,6 +36,13 @@ const MOST_LOOKS: usize = 4;
 
 /// Back along a ray the void is looked for in steps of half a voxel, this many.
 const STEPS_BACK: u32 = 24;
+
+/// Before a crevice the void is looked for this far out, in voxels, in this many directions each.
+const CREVICE_VOXELS: [f32; 8] = [1.5, 2.2, 3.2, 4.7, 7.0, 10.0, 15.0, 22.0];
+const CREVICE_LOOKS: u32 = 16;
+
+/// A side on which no point fell is looked for up to this many blocks away.
+const BESIDE_BLOCKS: i32 = 2;
 
 /// Points that are tried first, for each zone.
 const FIRST_POINTS_A_ZONE: u32 = 4;
@@ -85,6 +92,8 @@ pub struct Patches {
     pub starts: Vec<Start>,
     /// The patch of each zone and kind; a kind that got no point is that of the zone's largest patch.
     of_kind: Vec<u32>,
+    /// Whether what lies in crevices that the voxels close belongs to the patches before them.
+    has_crevices: bool,
 }
 
 impl Patches {
@@ -106,7 +115,12 @@ impl Patches {
         let point_m2 = model.walls.area_m2() / f64::from(tried);
 
         found.sort_by_key(|(kind, _)| *kind);
-        let mut patches = Self { list: Vec::new(), starts: Vec::new(), of_kind: vec![NONE; KINDS * zones.count] };
+        let mut patches = Self {
+            list: Vec::new(),
+            starts: Vec::new(),
+            of_kind: vec![NONE; KINDS * zones.count],
+            has_crevices: false,
+        };
         for side in found.chunk_by(|a, b| a.0 == b.0) {
             patches.add(side, point_m2, lines);
         }
@@ -149,6 +163,39 @@ impl Patches {
         }
     }
 
+    /// Lets every wall of a cell with patches belong to one of them; else rays to it would end nowhere. A side on which no point
+    /// fell is taken for its like in a zone beside, a zone without any for the nearest of its cell that has some, and a crevice
+    /// that the voxels close for the void before it. Where most of a mesh lies in the open, small places get few points.
+    ///
+    /// Cost: linear in the zones, and in them times the zones of their cell for groups of zones without any patch.
+    pub fn fill_gaps(&mut self, zones: &Zones) {
+        let mut own = vec![NONE; self.of_kind.len()];
+        for (number, patch) in self.list.iter().enumerate() {
+            let start = self.starts.get(patch.starts.start);
+            let kind = start.map(|start| kind(patch.zone, start.normal, start.answer));
+            if let Some(place) = kind.and_then(|kind| own.get_mut(kind as usize)) {
+                *place = number as u32;
+            }
+        }
+        let has_own = |zone: u32| own[KINDS * zone as usize..].iter().take(KINDS).any(|&patch| patch != NONE);
+        let beside = |place: usize| {
+            let (zone, kind) = ((place / KINDS) as u32, place % KINDS);
+            let like = |other: u32| own.get(KINDS * other as usize + kind).copied().filter(|&patch| patch != NONE);
+            zones.beside(zone, BESIDE_BLOCKS).find_map(like)
+        };
+        for place in (0..own.len()).filter(|&place| own[place] == NONE && has_own((place / KINDS) as u32)) {
+            if let Some(patch) = beside(place) {
+                self.of_kind[place] = patch;
+            }
+        }
+        for (zone, nearest) in zones.nearest_where(has_own).into_iter().enumerate() {
+            if let Some(nearest) = nearest.map(|nearest| nearest as usize).filter(|&nearest| nearest != zone) {
+                self.of_kind.copy_within(KINDS * nearest..KINDS * (nearest + 1), KINDS * zone);
+            }
+        }
+        self.has_crevices = true;
+    }
+
     /// The patch of a zone that is like a wall of that normal and answer; another of the zone's where it has none.
     pub fn like(&self, zone: u32, normal: Vec3, answer: Answer) -> Option<u32> {
         self.of_kind.get(kind(zone, normal, answer) as usize).copied().filter(|&patch| patch != NONE)
@@ -158,7 +205,8 @@ impl Patches {
     /// along `direction`. `None` where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
         let node = before_wall(model, hit.position_m, hit.normal, true)
-            .or_else(|| back_along(model, hit.position_m, direction, length_m))?;
+            .or_else(|| back_along(model, hit.position_m, direction, length_m))
+            .or_else(|| if self.has_crevices { before_crevice(model, hit) } else { None })?;
         self.like(zones.at(node, hit.position_m), hit.normal, hit.answer)
     }
 }
@@ -218,6 +266,18 @@ fn back_along(model: &Model, point_m: Vec3, direction: Vec3, length_m: f32) -> O
     steps
         .map(|back_m| point_m - back_m * direction)
         .find_map(|at_m| model.skeleton.nearest.node(lattice.voxel_at(at_m)))
+}
+
+/// The node of a void before a crevice: nearest of those that lie some way out from a place in it, in front of the place.
+fn before_crevice(model: &Model, hit: &Start) -> Option<u32> {
+    let lattice = &model.voxels.lattice;
+    let turn = Quat::from_rotation_arc(Vec3::Z, hit.normal);
+    let around = (0..CREVICE_LOOKS).map(|look| sequence::spiral(look, 2 * CREVICE_LOOKS, [0.5; 2]));
+    let ahead: Vec<Vec3> = around.map(|direction| turn * direction).collect();
+    CREVICE_VOXELS.into_iter().find_map(|out| {
+        let at_m = |direction: &Vec3| hit.position_m + out * lattice.voxel_m * *direction;
+        ahead.iter().find_map(|direction| model.skeleton.nearest.node(lattice.voxel_at(at_m(direction))))
+    })
 }
 
 /// The number of a zone's side.

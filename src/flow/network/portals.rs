@@ -96,6 +96,14 @@ impl Portal {
         let (a, b) = (self.border_m[triangle], self.border_m[(triangle + 1) % steps]);
         ((b - a).perp_dot(at_m - a) >= 0.0).then_some(Crossing { distance_m, cosine: cosine.abs() })
     }
+
+    /// How densely `count` directions from a point to evenly spread points of it lie about `direction`, per steradian; `None`
+    /// for one that does not cross it.
+    pub fn density_per_sr(&self, from_m: Vec3, direction: Vec3, count: u32) -> Option<f64> {
+        let crossing = self.crossing(from_m, direction, f32::INFINITY)?;
+        let squared_m2 = f64::from(crossing.distance_m).powi(2);
+        Some(f64::from(count) * squared_m2 / (self.area_m2 * f64::from(crossing.cosine)))
+    }
 }
 
 #[cfg(test)]

@@ -47,6 +47,20 @@ struct Group {
     blocks: IVec3,
 }
 
+impl Group {
+    /// Its zones with their middles, metres.
+    fn zones(&self) -> impl Iterator<Item = (u32, Vec3)> + '_ {
+        let middle_m = |number| self.low_m + (self.block(number).as_vec3() + 0.5) * self.block_m;
+        (0..self.blocks.element_product()).map(move |number| (self.first + number as u32, middle_m(number)))
+    }
+
+    /// The place of its block of that number.
+    fn block(&self, number: i32) -> IVec3 {
+        let row = number / self.blocks.x;
+        IVec3::new(number % self.blocks.x, row % self.blocks.y, row / self.blocks.y)
+    }
+}
+
 impl Zones {
     /// Parts the void of a model into zones about `spacing` widths long and wide.
     ///
@@ -85,12 +99,61 @@ impl Zones {
         group.first + (block.x + group.blocks.x * (block.y + group.blocks.y * block.z)) as u32
     }
 
+    /// The cell that a zone is a part of; `u32::MAX` for a number beyond the last.
+    pub fn cell(&self, zone: u32) -> u32 {
+        let group = self.groups.partition_point(|group| group.first <= zone).checked_sub(1);
+        let within = |group: &&Group| zone < group.first + group.blocks.element_product() as u32;
+        group.and_then(|group| self.groups.get(group)).filter(within).map_or(u32::MAX, |group| group.cell)
+    }
+
     /// The groups as ranges of zones, each with its cell.
     pub fn groups(&self) -> impl Iterator<Item = (std::ops::Range<u32>, u32)> {
         self.groups.iter().map(|group| {
             let count = group.blocks.element_product() as u32;
             (group.first..group.first + count, group.cell)
         })
+    }
+
+    /// The other zones of a zone's group up to so many blocks away, the nearest first.
+    pub fn beside(&self, zone: u32, blocks: i32) -> impl Iterator<Item = u32> {
+        let group = self.groups.partition_point(|group| group.first <= zone).checked_sub(1);
+        let mut beside = Vec::new();
+        if let Some(group) = group.and_then(|group| self.groups.get(group)) {
+            let place = group.block((zone - group.first) as i32);
+            let low = (place - blocks).max(IVec3::ZERO);
+            let high = (place + blocks).min(group.blocks - 1);
+            for z in low.z..=high.z {
+                for y in low.y..=high.y {
+                    for x in low.x..=high.x {
+                        let at = IVec3::new(x, y, z);
+                        let apart_m2 = ((at - place).as_vec3() * group.block_m).length_squared();
+                        beside.push((apart_m2, group.first + (x + group.blocks.x * (y + group.blocks.y * z)) as u32));
+                    }
+                }
+            }
+        }
+        beside.sort_by(|a, b| a.0.total_cmp(&b.0));
+        beside.into_iter().map(|(_, other)| other).filter(move |&other| other != zone)
+    }
+
+    /// For each zone the nearest one of its cell for which `has` holds, itself if it does; `None` where the cell has none.
+    pub fn nearest_where(&self, has: impl Fn(u32) -> bool + Sync) -> Vec<Option<u32>> {
+        let held: Vec<(u32, u32, Vec3)> = (self.groups.iter())
+            .flat_map(|group| group.zones().map(move |(zone, middle_m)| (group.cell, zone, middle_m)))
+            .filter(|&(_, zone, _)| has(zone))
+            .collect();
+        let nearest = |group: &Group| -> Vec<Option<u32>> {
+            // Within the group if it has any; a block beside is nearer along the void than one as near in another group.
+            let own: Vec<(u32, Vec3)> = group.zones().filter(|&(zone, _)| has(zone)).collect();
+            let of_cell = held.iter().filter(|(cell, ..)| *cell == group.cell).map(|&(_, zone, at_m)| (zone, at_m));
+            let among = if own.is_empty() { of_cell.collect() } else { own };
+            let to = |middle_m: Vec3| {
+                let apart = |(_, at_m): &&(u32, Vec3)| at_m.distance_squared(middle_m);
+                among.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).map(|&(zone, _)| zone)
+            };
+            group.zones().map(|(zone, middle_m)| if has(zone) { Some(zone) } else { to(middle_m) }).collect()
+        };
+        self.groups.par_iter().flat_map_iter(nearest).collect()
     }
 
     /// The shortest edge of the zones about a node, metres; 0 for a number beyond the skeleton.
