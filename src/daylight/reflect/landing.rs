@@ -14,8 +14,10 @@ use crate::flow::sequence;
 use crate::job::{Cancel, Cancelled};
 use rayon::prelude::*;
 
-/// At a point of a patch in the open.
-const OUTDOORS: Asking = Asking { suns: 8, sky_rays: 8, neck_rays: 0 };
+/// Suns of all points of patches in the open together: where these are few, each asks more, for a room whose window opens onto
+/// the box around the mesh is in the open too.
+const ALL_SUNS: u32 = 1_000_000;
+const SUNS_A_POINT: (u32, u32) = (8, 64);
 
 /// At a point of a patch in a room.
 const INDOORS: Asking = Asking { suns: 64, sky_rays: 8, neck_rays: 8 };
@@ -50,13 +52,16 @@ impl Falling<'_> {
     /// # Errors
     /// [`Cancelled`].
     pub fn on_patches(&self, grounds: &Grounds, cancel: &Cancel) -> Result<Vec<Landing>, Cancelled> {
+        let points = u32::try_from(grounds.patches.starts.len()).unwrap_or(u32::MAX).max(1);
+        let suns = (ALL_SUNS / points).clamp(SUNS_A_POINT.0, SUNS_A_POINT.1);
+        let outdoors = Asking { suns, sky_rays: suns, neck_rays: 0 };
         let on_patch = |(number, patch): (usize, &Patch)| {
             cancel.check()?;
             let starts = &grounds.patches.starts[patch.starts.clone()];
             let offset = sequence::offset(self.seed, PATCH_OFFSETS + number as u64);
             let (mut lands_kwh_m2, mut leaves_kwh_m2) = ([0.0; COLUMNS], [0.0; COLUMNS]);
             for (point, start) in starts.iter().enumerate() {
-                let brought = self.at(grounds, patch, start, OUTDOORS, INDOORS, sequence::square(point as u32, offset));
+                let brought = self.at(grounds, patch, start, outdoors, INDOORS, sequence::square(point as u32, offset));
                 for (column, brought_kwh_m2) in brought.into_iter().enumerate() {
                     lands_kwh_m2[column] += brought_kwh_m2;
                     leaves_kwh_m2[column] += brought_kwh_m2 * f64::from(start.answer.reflects);

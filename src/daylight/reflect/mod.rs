@@ -116,13 +116,16 @@ fn reflected(
     let from_m = stands_at(&model.rays, point);
     let cell = model.place(point.position_m, point.normal).ok();
     let cell = cell.and_then(|node| model.skeleton.graph.node_weight(node)).map_or(u32::MAX, |node| node.cell);
-    let sights = sights(network, &rays, from_m, point.normal, cell, offset);
+    let in_the_open = is_open(falling.open, cell);
+    // From the street windows are dark, and no rays are aimed at them.
+    let aimed = if in_the_open { u32::MAX } else { cell };
+    let sights = sights(network, &rays, from_m, point.normal, aimed, offset);
     let sharpen = |place: &Place, arriving: Arriving| falling.sharpen(network, place, arriving);
     let begin = Gathered { columns_w_m2: vec![0.0; COLUMNS], ..Gathered::default() };
     let gathered = gathered(network, &sights, point.normal, &sharpen, LARGE_FROM_RAYS, begin);
     let column = |number: usize| gathered.columns_w_m2.get(number).copied().unwrap_or(0.0);
 
-    let necks = if is_open(falling.open, cell) { Vec::new() } else { necks_of(&grounds.portals, cell, from_m) };
+    let necks = if in_the_open { Vec::new() } else { necks_of(&grounds.portals, cell, from_m) };
     let straight = straight(&model.rays, falling.light, point, &necks, casting, number);
     Reflected {
         of_beam_kwh_m2: column(0),
