@@ -22,6 +22,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for path in std::env::args_os().skip(1) {
         let path = Path::new(&path);
         match Scene::load(path, &Quiet, &Cancel::new()) {
+            Ok(scene) if scene.lights.is_empty() && scene.site.is_some() => {
+                eprintln!("skipped: {} lies under the sky and has no lights", scene.name);
+            }
             Ok(scene) => remarks.extend(row(&scene)?),
             Err(error) => eprintln!("skipped: {error}"),
         }

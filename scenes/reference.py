@@ -91,6 +91,9 @@ def main():
     options = parser.parse_args()
     for path in options.scene:
         scene = SceneFile(path)
+        if "reference" not in scene.table.get("sensors", {}):
+            print(f"{path}: skipped, it names no reference")
+            continue
         target = scene.path.parent / scene.table["sensors"]["reference"]
         remarks, old = kept(target) if options.add else ([], {})
         sensors = [sensor for sensor in scene.sensors() if sensor[0] not in old]

@@ -92,13 +92,17 @@ pub struct Suns {
     groups: Vec<Group>,
 }
 
-/// Neighbours, laid out by part; those that fill the last group bring nothing.
+/// One part of a group's suns, in rows as wide as are summed side by side.
+type Rows = [[f32; LANES]; GROUP / LANES];
+
+/// Neighbours, laid out by part; those that fill the last group bring nothing and count nothing.
 #[derive(Debug, Clone)]
 struct Group {
     cone: Cone,
-    towards: [[f32; GROUP]; 3],
-    energy_kwh_m2: [f32; GROUP],
-    hours: [f32; GROUP],
+    towards: [Rows; 3],
+    energy_kwh_m2: Rows,
+    hours: Rows,
+    suns: Rows,
 }
 
 /// What a group would bring with nothing in its way.
@@ -141,15 +145,16 @@ impl Group {
         let axis = beams.iter().map(|sun| sun.towards).sum::<Vec3>().normalize_or(Vec3::Z);
         let cosine = beams.iter().map(|sun| sun.towards.dot(axis)).fold(1.0, f32::min) - 1e-5;
         let each = |part: fn(&Beam) -> f32| {
-            let mut parts = [0.0; GROUP];
-            parts.iter_mut().zip(beams).for_each(|(place, sun)| *place = part(sun));
-            parts
+            let mut rows = [[0.0; LANES]; GROUP / LANES];
+            rows.as_flattened_mut().iter_mut().zip(beams).for_each(|(place, sun)| *place = part(sun));
+            rows
         };
         Self {
             cone: Cone { axis, cosine },
             towards: [each(|sun| sun.towards.x), each(|sun| sun.towards.y), each(|sun| sun.towards.z)],
             energy_kwh_m2: each(|sun| sun.energy_kwh_m2 as f32),
             hours: each(|sun| sun.hours as f32),
+            suns: each(|_| 1.0),
         }
     }
 
@@ -157,16 +162,19 @@ impl Group {
         if normal.is_some_and(|normal| self.cone.is_behind(normal)) {
             return Brings::default();
         }
-        let [x, y, z] = &self.towards;
+        // Without a normal every sun counts by 1: the cosine of no direction, and 1.
+        let ([nx, ny, nz], at_least) = normal.map_or(([0.0; 3], 1.0), |normal| (normal.to_array(), 0.0));
         let (mut energy, mut hours, mut suns) = ([0.0_f32; LANES], [0.0_f32; LANES], [0.0_f32; LANES]);
-        for first in (0..GROUP).step_by(LANES) {
+        for row in 0..GROUP / LANES {
+            let [x, y, z] = self.towards.each_ref().map(|part| &part[row]);
+            let (of_energy, of_hours, of_suns) = (&self.energy_kwh_m2[row], &self.hours[row], &self.suns[row]);
             for lane in 0..LANES {
-                let at = first + lane;
-                let cosine = normal.map_or(1.0, |normal| x[at] * normal.x + y[at] * normal.y + z[at] * normal.z);
-                let is_in_front = if cosine > 0.0 && self.energy_kwh_m2[at] > 0.0 { 1.0 } else { 0.0 };
-                energy[lane] += is_in_front * cosine * self.energy_kwh_m2[at];
-                hours[lane] += is_in_front * self.hours[at];
-                suns[lane] += is_in_front;
+                let cosine = x[lane] * nx + y[lane] * ny + z[lane] * nz;
+                let cosine = if cosine > at_least { cosine } else { at_least };
+                let is_in_front = if cosine > 0.0 { 1.0 } else { 0.0 };
+                energy[lane] += cosine * of_energy[lane];
+                hours[lane] += is_in_front * of_hours[lane];
+                suns[lane] += is_in_front * of_suns[lane];
             }
         }
         let sum = |lanes: [f32; LANES]| lanes.into_iter().map(f64::from).sum::<f64>();

@@ -209,21 +209,37 @@ pub(super) fn looks() -> impl Iterator<Item = Vec3> {
     (0..LOOKS).map(|look| sequence::spiral(look, LOOKS, [0.37, 0.71]))
 }
 
+/// What is seen in a direction by who asks whether he is inside matter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    /// The sky, or glazing before it.
+    Sky,
+    /// The front of a surface.
+    Front,
+    /// The back of one.
+    Back,
+    /// Nothing, below the horizon.
+    Nothing,
+}
+
+/// What is seen in a direction.
+pub(super) fn look(rays: &Rays, from_m: Vec3, direction: Vec3) -> Look {
+    if direction.z > 0.0 && rays.from_afar(from_m, direction) > 0.0 {
+        return Look::Sky;
+    }
+    match rays.closest(from_m, direction, f32::INFINITY) {
+        Some(hit) if hit.front => Look::Front,
+        Some(_) => Look::Back,
+        None => Look::Nothing,
+    }
+}
+
 /// Whether a point is inside matter: most of what is seen from it are backs of surfaces; or, under the ground as a sheet, no
 /// sky is seen and more backs than fronts. Glazing before the sky counts as sky.
 pub(super) fn is_inside(rays: &Rays, from_m: Vec3) -> bool {
-    let (mut backs, mut fronts, mut sky) = (0, 0, 0);
-    for look in looks() {
-        if look.z > 0.0 && rays.from_afar(from_m, look) > 0.0 {
-            sky += 1;
-            continue;
-        }
-        match rays.closest(from_m, look, f32::INFINITY) {
-            Some(hit) if hit.front => fronts += 1,
-            Some(_) => backs += 1,
-            None => {}
-        }
-    }
+    let mut counts = [0; 4];
+    looks().for_each(|direction| counts[look(rays, from_m, direction) as usize] += 1);
+    let [sky, fronts, backs, _] = counts;
     // A sheet over open ground shows its back to those who stand under it, and the sky beside it.
     backs > fronts && (backs * 2 > LOOKS || sky == 0)
 }

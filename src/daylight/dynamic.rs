@@ -2,16 +2,17 @@
 //!
 //! A ray that meets neither a box in which something stood nor one in which it stands now ends where it ended. The rays of a
 //! point are known without being traced, for they follow from its number, so each is held against those boxes, which costs a
-//! few nanoseconds where tracing costs hundreds; only points with a ray that meets a box are asked again, all others keep
-//! their bits. Suns are tested all, also where a point looks at some. (Figure 12 of Munoz-Pandiella et al. 2017 has times of
+//! few nanoseconds where tracing costs hundreds; those that meet a box are sent through the scene as it was and as it is; only
+//! points for which any of them ends otherwise are asked again, all others keep their bits. Of suns all are held against the
+//! boxes, also where a point looks at some, and none is sent: meeting a box is enough. (Figure 12 of Munoz-Pandiella et al. 2017 has times of
 //! updates; there the maps of depth are drawn anew for all.)
 //!
-//! Limits: boxes stand for what is in them, so points that see past a part's corners are asked again for nothing; a change that
+//! Limits: for the suns boxes stand for what is in them, so points that see past a part's corners are asked again for nothing; a change that
 //! reaches beyond the scene's largest coordinate changes the precision of all rays, and all is asked again.
 
 use super::beams::{Cone, Suns};
 use super::camera::Buffers;
-use super::cast::{Asked, Casting, cast_at, looks, sky_directions, stands_at};
+use super::cast::{Asked, Casting, cast_at, look, looks, sky_directions, stands_at};
 use super::{Exposure, Point};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::rays::Rays;
@@ -185,6 +186,8 @@ pub struct Updated {
 /// What was known before a change: points with ascending numbers, and what they received.
 #[derive(Debug, Clone, Copy)]
 pub struct Known<'a> {
+    /// The rays that told so.
+    pub rays: &'a Rays,
     /// The points.
     pub asked: Asked<'a>,
     /// Their exposures.
@@ -217,7 +220,8 @@ pub fn update(
             progress.advance(1);
             let looks = !asked.in_the_open;
             let stays = |_: &&Exposure| {
-                !disturbance.concerns(stands_at(rays, point), point, looks, &suns, casting, asked.number(at))
+                let concern = Concern { disturbance, rays: [known.rays, rays], suns: &suns, casting, looks };
+                !concern.is_of(point, asked.number(at))
             };
             Ok(kept[at].and_then(|old| known.exposures.get(old)).filter(stays))
         })
@@ -252,24 +256,32 @@ fn same_points(asked: Asked, known: Known) -> Vec<Option<usize>> {
         .collect()
 }
 
-impl Disturbance {
-    /// Whether a ray that a point sends meets a change, or the point itself is at one: where its rays begin depends on what is
-    /// near.
-    fn concerns(
-        &self,
-        from_m: Vec3,
-        point: &Point,
-        looks_around: bool,
-        suns: &Suns,
-        casting: Casting,
-        number: u64,
-    ) -> bool {
-        let Some(boxes) = &self.boxes else { return true };
+/// What a point's rays are held against.
+struct Concern<'a> {
+    disturbance: &'a Disturbance,
+    /// Before and after.
+    rays: [&'a Rays; 2],
+    suns: &'a Suns,
+    casting: Casting,
+    /// Whether points look whether they are inside matter.
+    looks: bool,
+}
+
+impl Concern<'_> {
+    /// Whether a ray that a point sends may end otherwise than before, or the point itself is at a change: where its rays begin
+    /// depends on what is near.
+    fn is_of(&self, point: &Point, number: u64) -> bool {
+        let Some(boxes) = &self.disturbance.boxes else { return true };
+        let [old, new] = self.rays;
+        let from_m = stands_at(new, point);
         let from = from_m.as_dvec3();
         if boxes.iter().any(|around| around.holds(from) || around.holds(point.position_m.as_dvec3())) {
             return true;
         }
-        if looks_around && looks().any(|look| self.meets(from_m, look)) {
+        let differs = |direction: Vec3| {
+            self.disturbance.meets(from_m, direction) && look(old, from_m, direction) != look(new, from_m, direction)
+        };
+        if self.looks && looks().any(differs) {
             return true;
         }
         let before = |around: &&Around| point.normal.is_none_or(|normal| around.is_before(from, normal.as_dvec3()));
@@ -278,7 +290,7 @@ impl Disturbance {
 
         let in_front = |sun: Vec3| point.normal.is_none_or(|normal| sun.dot(normal) > 0.0);
         let is_shaded = |&(around, cone): &(&Around, Cone)| {
-            suns.any_in(&cone, |sun| in_front(sun) && around.is_met(from, sun.as_dvec3()))
+            self.suns.any_in(&cone, |sun| in_front(sun) && around.is_met(from, sun.as_dvec3()))
         };
         if seen.iter().any(is_shaded) {
             return true;
@@ -290,7 +302,11 @@ impl Disturbance {
                 direction.dot(cone.axis) >= cone.cosine && around.is_met(from, direction.as_dvec3())
             })
         };
+        let differs = |direction: Vec3| {
+            let is_asked = direction.z > 0.0 && is_met(direction);
+            is_asked && old.from_afar(from_m, direction) != new.from_afar(from_m, direction)
+        };
         seen.iter().any(|(around, _)| around.high_m.z > from.z)
-            && sky_directions(point.normal, casting, number).any(|direction| direction.z > 0.0 && is_met(direction))
+            && sky_directions(point.normal, self.casting, number).any(differs)
     }
 }

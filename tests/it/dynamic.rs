@@ -84,7 +84,7 @@ fn both(edits: &[(String, Edit)], before: Asked, after: Asked) -> (usize, bool, 
     let (rays, disturbance) = changed(&SCENE, &RAYS, &changes);
     let full = |rays: &Rays, asked| cast_at(rays, asked, &MAP, 0.3, CASTING, &Quiet, &Cancel::new()).unwrap();
     let exposures = full(&RAYS, before);
-    let known = Known { asked: before, exposures: &exposures };
+    let known = Known { rays: &RAYS, asked: before, exposures: &exposures };
     let updated = update(&rays, after, known, &disturbance, &MAP, 0.3, CASTING, &Quiet, &Cancel::new()).unwrap();
     let fresh = Rays::new(&SCENE.changed(&changes));
     let is_as_fresh = fresh.epsilon_m() != rays.epsilon_m() || updated.exposures == full(&fresh, after);
@@ -172,7 +172,7 @@ fn what_grows_beyond_the_scene_is_asked_anew_and_a_raised_flag_stops() {
     cancel.cancel();
     let changes = SCENE.changes(&edits).unwrap();
     let (rays, disturbance) = changed(&SCENE, &RAYS, &changes);
-    let known = Known { asked, exposures: &[] };
+    let known = Known { rays: &RAYS, asked, exposures: &[] };
     assert_eq!(update(&rays, asked, known, &disturbance, &MAP, 0.0, CASTING, &Quiet, &cancel), Err(Cancelled));
     assert_eq!(corners(&SCENE.mesh, &SCENE.parts, &cancel), Err(Cancelled));
 }
@@ -208,7 +208,7 @@ fn files_name_their_parts() {
     let folder = tempfile::tempdir().unwrap();
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     let files = [
-        ("a.obj", format!("o lid\n{square}g rim\nv 2 2 2\nf 2 3 4\no lid\nf 1 3 4\n")),
+        ("a.obj", format!("o lid\n{square}g rim\nv 2 2 2\nf 2 3 4\no lid\nf 1 3 4\ng rim\nf 1 2 4\n")),
         ("b.obj", square.replace(" 0\n", " 7\n")),
         ("two.toml", "[geometry]\nmeshes = [\"a.obj\", \"b.obj\"]\n".to_owned()),
     ];
@@ -219,7 +219,8 @@ fn files_name_their_parts() {
         let scene = Scene::load(&folder.path().join(name), &Quiet, &Cancel::new()).unwrap();
         scene.parts.into_iter().map(|part| (part.name, part.triangles)).collect::<Vec<_>>()
     };
-    assert_eq!(parts("a.obj"), [("lid".to_owned(), vec![0..1, 2..3]), ("rim".to_owned(), vec![1..2])]);
+    let [lid, rim] = [vec![0..1, 2..3], vec![1..2, 3..4]];
+    assert_eq!(parts("a.obj"), [("lid".to_owned(), lid), ("rim".to_owned(), rim)]);
     let names: Vec<String> = parts("two.toml").into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["a/lid", "a/rim", "b/b"]);
 }

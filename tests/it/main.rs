@@ -67,8 +67,12 @@ mod exposure_robust;
 
 /// Real cities against Radiance.
 mod cities;
+
 /// Exposure on faces, at vertices, and in pictures.
 mod views;
 
 /// Parts of a scene moved, scaled or hidden.
 mod dynamic;
+
+/// Exposure by maps, at one scale and at two.
+mod scales;

@@ -103,7 +103,7 @@ pub fn run(args: &ExposeArgs, cancel: &Cancel) -> Result<()> {
         full_seconds,
         found: Found::new(&scene, at, &after.places, &after.exposures, &files_after),
     });
-    let report = Report::new(&scene, at, &map, seconds, &chosen, found, update, &warnings);
+    let report = Report::new(&scene, at, &map, seconds, &chosen, found, &warnings).with(update);
     let json = serde_json::to_string(&report)?;
     if let Some(folder) = &mut folder {
         folder.file("exposure.json", |out| writeln!(out, "{json}"))?;

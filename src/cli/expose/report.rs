@@ -239,7 +239,6 @@ impl<'a> Report<'a> {
         seconds: f64,
         chosen: &Chosen,
         found: Found<'a>,
-        update: Option<Update<'a>>,
         warnings: &'a [String],
     ) -> Self {
         Self {
@@ -253,9 +252,14 @@ impl<'a> Report<'a> {
             dhi: map.totals.dhi_kwh_m2,
             at: (at != At::Sensors).then(|| at.name()),
             found,
-            update,
+            update: None,
             warnings,
         }
+    }
+
+    /// The same with what became of it by edits.
+    pub fn with(self, update: Option<Update<'a>>) -> Self {
+        Self { update, ..self }
     }
 
     /// The report for a reader.

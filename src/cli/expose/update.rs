@@ -54,7 +54,7 @@ impl Before<'_> {
         let (rays, disturbance) = changed(self.scene, self.rays, &changes);
         let scenery = Scenery { changes, rays, disturbance };
         let places = self.places.changed(self.scene, &scenery, progress, cancel)?;
-        let known = Known { asked: self.places.asked(), exposures: self.exposures };
+        let known = Known { rays: self.rays, asked: self.places.asked(), exposures: self.exposures };
         let Scenery { changes, rays, disturbance } = &scenery;
         let updated =
             update(rays, places.asked(), known, disturbance, self.map, self.north_rad, self.casting, progress, cancel)?;

@@ -142,11 +142,12 @@ fn at_point(
         let (sine, cosine) = (sums.azimuth_rad(direction, turn) as f32).sin_cos();
         let along = Vec2::new(sine, cosine);
         let Some(plane) = before_plane(point.normal, along) else { continue };
-        let half = &mut halves[direction % 2];
+        let mut visible = Piece::default();
         bands(zenith, rings, overhangs, &seer, along, plane, |band| {
-            let piece = sums.above(direction, turn, band.low).without(&sums.above(direction, turn, band.high));
-            half.add(&piece, point.normal, along);
+            let above = |sine: f32| sums.above(direction, turn, sine);
+            visible = visible.and(&above(band.low).without(&above(band.high)));
         });
+        halves[direction % 2].add(&visible, point.normal, along);
     }
     let [even, odd] = halves;
     let error_kwh_m2 = f64::from((even.kwh_m2() - odd.kwh_m2()).abs() / 2.0);

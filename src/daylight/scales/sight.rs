@@ -18,6 +18,9 @@ use glam::{Vec2, Vec3};
 /// A slope steeper than this between two samples is a wall: 63 degrees, steeper than most roofs.
 const WALL_SLOPE: f32 = 2.0;
 
+/// Nearer along than this, in texels, a sample's texel is the point's own.
+const NEAREST_TEXELS: f32 = 0.25;
+
 /// Elevations that are told apart under what floats, evenly by their sine.
 const STEPS: u32 = u64::BITS;
 
@@ -34,7 +37,7 @@ struct Ring {
     middle_m: f32,
     far_m: f32,
     /// The level of the map it is read from, whose texels are no wider.
-    level: usize,
+    level: u32,
 }
 
 impl Rings {
@@ -60,7 +63,7 @@ impl Rings {
             near_m: edge[0],
             middle_m: edge[0] + turn.clamp(0.0, 1.0) * (edge[1] - edge[0]),
             far_m: edge[1],
-            level: zenith.level_of(edge[1] - edge[0]),
+            level: zenith.level_of(edge[1] - edge[0]) as u32,
         };
         let inside = |ring: &Ring| ring.near_m < reach_m;
         Self { rings: edges.windows(2).map(ring).take_while(inside).collect() }
@@ -68,7 +71,7 @@ impl Rings {
 
     /// The level of the map and the distance of each sample, metres.
     pub fn places(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
-        self.rings.iter().map(|ring| (ring.level, ring.middle_m))
+        self.rings.iter().map(|ring| (ring.level as usize, ring.middle_m))
     }
 
     /// How many samples there are.
@@ -148,16 +151,17 @@ struct Seen {
     covered: u64,
 }
 
-/// A sample that lies on the map: where, how far along and how far off its middle lies.
+/// A sample that lies on the map: where, how far off its middle lies, and how far along.
 struct Sample<'a> {
     level: &'a Level,
     texel: usize,
-    ring: Ring,
+    ring: &'a Ring,
     along_m: f32,
     off_m: Vec2,
 }
 
-/// The samples along a direction, the nearest first.
+/// The samples along a direction that lie on the map, the nearest first.
+#[inline]
 fn samples<'a>(
     zenith: &'a Zenith,
     rings: &'a Rings,
@@ -165,28 +169,53 @@ fn samples<'a>(
     along: Vec2,
 ) -> impl Iterator<Item = Sample<'a>> + 'a {
     let step = along / zenith.texel_m;
-    rings.rings.iter().filter_map(move |&ring| {
-        let level = zenith.levels.get(ring.level)?;
-        let at = (point.at + step * ring.middle_m).floor().as_ivec2() >> ring.level as i32;
-        let texel = level.texel(at.x, at.y)?;
+    let sample = move |ring: &'a Ring| {
+        let level = zenith.levels.get(ring.level as usize)?;
+        // Left of the map and below it lies no texel but, within one, that on its edge.
+        let at = (point.at + step * ring.middle_m).to_array().map(|at| at as i32 >> ring.level);
+        let texel = level.texel(at[0], at[1])?;
         // A texel of a thin level is the one of the finest below and left of its middle.
-        let middle = (((at << ring.level as i32) + (1 << ring.level) - 1).as_vec2() + 0.5) - point.at;
-        let off_m = middle * zenith.texel_m;
-        let along_m = off_m.dot(along);
-        (along_m > 0.25 * zenith.texel_m).then_some(Sample { level, texel, ring, along_m, off_m })
-    })
+        let middle = at.map(|at| ((at << ring.level) + (1 << ring.level) - 1) as f32 + 0.5);
+        let off_m = (Vec2::from(middle) - point.at) * zenith.texel_m;
+        Some(Sample { level, texel, ring, along_m: off_m.dot(along), off_m })
+    };
+    let nearest_m = NEAREST_TEXELS * zenith.texel_m;
+    rings.rings.iter().map_while(sample).filter(move |sample| sample.along_m > nearest_m)
+}
+
+/// The horizon so far, and the sample before.
+#[derive(Debug, Clone, Copy)]
+struct Horizon {
+    low: f32,
+    before_m: f32,
+    before_along_m: f32,
+}
+
+impl Horizon {
+    const LEVEL: Self = Self { low: f32::NEG_INFINITY, before_m: 0.0, before_along_m: 0.0 };
+
+    /// Raises it by what stands so high above the point so far along: half-way to the sample before if it rises there like a wall.
+    #[inline]
+    fn raise(&mut self, rise_m: f32, along_m: f32) {
+        let step_m = along_m - self.before_along_m;
+        let is_wall = rise_m - self.before_m > WALL_SLOPE * step_m;
+        let at_m = if is_wall { along_m - 0.5 * step_m } else { along_m };
+        if rise_m > self.low * at_m {
+            self.low = rise_m / at_m;
+        }
+        (self.before_m, self.before_along_m) = (rise_m, along_m);
+    }
 }
 
 /// By the highest surfaces.
 fn heights(zenith: &Zenith, rings: &Rings, overhangs: Overhangs, point: &super::Seer, along: Vec2) -> Seen {
     let z_m = point.position_m.z;
     let mut is_covered = overhangs == Overhangs::Opening && point.covered;
-    let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
-    let (mut before_m, mut before_along_m) = (0.0_f32, 0.0_f32);
+    let (mut horizon, mut high) = (Horizon::LEVEL, f32::INFINITY);
     let highest_m = zenith.highest_m - z_m;
     for Sample { level, texel, along_m, off_m, .. } in samples(zenith, rings, point, along) {
         // Nothing that is left can rise above the horizon.
-        if highest_m < low * along_m {
+        if highest_m < horizon.low * along_m {
             break;
         }
         let rise_m = level.top_m[texel] - z_m;
@@ -196,46 +225,40 @@ fn heights(zenith: &Zenith, rings: &Rings, overhangs: Overhangs, point: &super::
         if is_covered {
             is_covered = rise_m > 0.0;
             high = if is_covered { rise_m / along_m } else { high };
+            (horizon.before_m, horizon.before_along_m) = (rise_m, along_m);
         } else {
-            low = low.max(slope(rise_m, along_m, before_m, before_along_m));
+            horizon.raise(rise_m, along_m);
         }
-        (before_m, before_along_m) = (rise_m, along_m);
     }
     let covered = if is_covered { u64::MAX } else { 0 };
-    Seen { low, high, covered }
-}
-
-/// The slope to something, half-way to the sample before if it rises there like a wall.
-fn slope(rise_m: f32, along_m: f32, before_m: f32, before_along_m: f32) -> f32 {
-    let step_m = along_m - before_along_m;
-    let is_wall = rise_m - before_m > WALL_SLOPE * step_m;
-    rise_m / (if is_wall { along_m - 0.5 * step_m } else { along_m })
+    Seen { low: horizon.low, high, covered }
 }
 
 /// By all spans of matter.
 fn peeled(zenith: &Zenith, rings: &Rings, point: &super::Seer, along: Vec2) -> Seen {
     let z_m = point.position_m.z;
-    let (mut low, mut covered) = (f32::NEG_INFINITY, 0_u64);
-    let (mut before_m, mut before_along_m) = (0.0_f32, 0.0_f32);
+    let (mut horizon, mut covered) = (Horizon::LEVEL, 0_u64);
     let highest_m = zenith.highest_m - z_m;
     for Sample { level, texel, ring, along_m, off_m } in samples(zenith, rings, point, along) {
-        if highest_m < low * ring.near_m {
+        if highest_m < horizon.low * ring.near_m {
             break;
         }
         let (ground_m, spans) = level.column(texel);
         let rise_m = ground_m - z_m;
         if point.is_before(off_m, rise_m) {
-            low = low.max(slope(rise_m, along_m, before_m, before_along_m));
-            (before_m, before_along_m) = (rise_m, along_m);
+            horizon.raise(rise_m, along_m);
         }
-        let before = spans.iter().filter(|span| point.is_before(off_m, span.top_m - z_m));
-        covered = before.fold(covered, |covered, span| covered | cover(span, z_m, ring));
+        for span in spans {
+            if point.is_before(off_m, span.top_m - z_m) {
+                covered |= cover(span, z_m, ring);
+            }
+        }
     }
-    Seen { low, high: f32::INFINITY, covered }
+    Seen { low: horizon.low, high: f32::INFINITY, covered }
 }
 
 /// The elevations that a span covers all through its ring.
-fn cover(span: &Span, z_m: f32, ring: Ring) -> u64 {
+fn cover(span: &Span, z_m: f32, ring: &Ring) -> u64 {
     let [under_m, over_m] = [span.bottom_m - z_m, span.top_m - z_m];
     if over_m <= 0.0 {
         return 0;
@@ -254,6 +277,7 @@ pub fn between(low: f32, high: f32) -> u64 {
 
 impl super::Seer {
     /// Whether something lies in front of the surface that the point lies on.
+    #[inline]
     fn is_before(&self, off_m: Vec2, rise_m: f32) -> bool {
         rise_m > NOTHING_M && self.normal.is_none_or(|normal| normal.dot(Vec3::new(off_m.x, off_m.y, rise_m)) > 0.0)
     }
@@ -266,7 +290,8 @@ mod tests {
     #[test]
     fn rings_reach_out_and_grow() {
         let size = [1024, 1024];
-        let levels = (0..5).map(|level| Level { size: size.map(|side| side >> level), ..Level::default() }).collect();
+        let mut levels = vec![Level::default(); 5];
+        levels.iter_mut().enumerate().for_each(|(at, level)| level.size = size.map(|side| side >> at));
         let zenith = Zenith { corner_m: Vec2::ZERO, texel_m: 0.25, highest_m: 0.0, levels };
         for (samples, reach_m) in [(1, 10.0), (8, 100.0), (64, 100.0), (4096, 100.0)] {
             let rings = Rings::new(&zenith, samples, reach_m, 0.5).rings;
@@ -287,7 +312,7 @@ mod tests {
     #[test]
     fn a_span_covers_the_elevations_between_its_sides() {
         let ring = Ring { near_m: 1.0, middle_m: 1.0, far_m: 1.0, level: 0 };
-        let cover = |bottom_m: f32, top_m: f32| cover(&Span { bottom_m, top_m }, 10.0, ring);
+        let cover = |bottom_m: f32, top_m: f32| cover(&Span { bottom_m, top_m }, 10.0, &ring);
         // 30 degrees is half the sine, 90 all of it.
         let at = |degrees: f32| 10.0 + degrees.to_radians().tan();
         assert_eq!(cover(at(30.0), f32::INFINITY), u64::MAX << 32);

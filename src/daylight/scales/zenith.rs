@@ -173,14 +173,16 @@ impl Zenith {
 
 impl Level {
     /// The number of a texel; `None` beyond the map.
+    #[inline]
     pub fn texel(&self, column: i32, row: i32) -> Option<usize> {
-        let inside = |at: i32, size: usize| at >= 0 && (at as usize) < size;
-        (inside(column, self.size[0]) && inside(row, self.size[1]))
-            .then(|| row as usize * self.size[0] + column as usize)
+        // A negative number is large without its sign.
+        let [column, row] = [column, row].map(|at| at.cast_unsigned() as usize);
+        (column < self.size[0] && row < self.size[1]).then(|| row * self.size[0] + column)
     }
 
     /// The top of what stands on the ground of a texel of a peeled map, metres, and the spans that float over it, from above to
     /// below.
+    #[inline]
     pub fn column(&self, texel: usize) -> (f32, &[Span]) {
         match self.columns.get(texel..texel + 2) {
             Some([this, next]) if this.first == next.first => (this.ground_m, &[]),

@@ -287,17 +287,20 @@ fn at_pixel(
         if low >= high {
             continue;
         }
-        let across = normal.truncate().dot(along);
+        let (mut energy, mut plane_sr) = (Vec4::ZERO, [0.0; 2]);
         let mut add = |low: f32, high: f32| {
-            let (energy, [level_sr, upright_sr]) = sums.between(sector, low, high);
-            received.total_kwh_m2 += normal.dot(energy.truncate()).max(0.0);
-            received.svf += (normal.z * level_sr + across * upright_sr).max(0.0) / PI;
-            received.sun_h += energy.w;
+            let (more, [level_sr, upright_sr]) = sums.between(sector, low, high);
+            energy += more;
+            plane_sr = [plane_sr[0] + level_sr, plane_sr[1] + upright_sr];
         };
         match &covered {
             None => add(low, high),
             Some(covered) => each_open(!covered[direction], low, high, |band| add(band.low, band.high)),
         }
+        let across = normal.truncate().dot(along);
+        received.total_kwh_m2 += normal.dot(energy.truncate()).max(0.0);
+        received.svf += (normal.z * plane_sr[0] + across * plane_sr[1]).max(0.0) / PI;
+        received.sun_h += energy.w;
     }
     received
 }
