@@ -196,7 +196,7 @@ fn points() -> Vec<Point> {
         let side = &sides[number * 7 % sides.len()];
         let [across, up] = [1, 2].map(|roll| 0.02 + 0.96 * dice(number, roll));
         let normal = side.normal();
-        if number % 3 == 0 && normal.z < 0.5 {
+        if number.is_multiple_of(3) && normal.z < 0.5 {
             let foot_m = side.at(across, 0.0, 0.2 + (STREET_M - 0.4) * up);
             return Point { position_m: foot_m + OFF_M * Vec3::Z, normal: Some(Vec3::Z) };
         }

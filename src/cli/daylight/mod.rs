@@ -11,13 +11,15 @@ use super::stages::Stages;
 use super::tell;
 use super::write::Folder;
 use crate::daylight::cast::{Casting, cast};
+use crate::daylight::choose::choose;
+use crate::daylight::reflect::choose::by_fitting_network;
 use crate::daylight::reflect::heuristics::by_heuristic;
 use crate::daylight::reflect::openings::open_cells;
 use crate::daylight::reflect::skylight::Skylight;
-use crate::daylight::reflect::{self, Reflected, by_network, by_nothing};
+use crate::daylight::reflect::{self, Reflected, by_nothing};
+use crate::daylight::way::{Ground, Way};
 use crate::daylight::{self, Exposure, Point};
 use crate::export;
-use crate::flow::network::Quality;
 use crate::job::Cancel;
 use crate::light::Settings;
 use crate::model::Model;
@@ -33,7 +35,7 @@ use crate::voxel::closed;
 use anyhow::{Context, Result};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use jiff::civil::{Date, DateTime, Time};
-use report::{Found, Report, text};
+use report::{Found, Modelled, Report, text};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -41,6 +43,9 @@ use std::time::Instant;
 
 /// The methods that carry what is reflected.
 const METHODS: [Method; 4] = [Method::Backward, Method::Forward, Method::Diffusion, Method::Network];
+
+/// The tolerance where none is named.
+const TOLERANCE: f64 = 1.02;
 
 /// What `daylight` takes.
 #[derive(Debug, clap::Args)]
@@ -58,12 +63,16 @@ pub struct DaylightArgs {
     pub time: Option<Time>,
     #[command(flatten)]
     pub site: SiteArgs,
-    /// Suns of the period that a sensor looks at; by default every one
+    /// Factor within which daylight is to be right, above 1: of sun and sky the RMSE, of what is reflected the network's own error,
+    /// as shares of the mean; by default what the scene says, else 1.02
+    #[arg(long, value_name = "F", value_parser = crate::cli::args::factor)]
+    pub tolerance: Option<f64>,
+    /// Suns of the period that a sensor looks at, whatever the tolerance
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub sun_rays: Option<u32>,
-    /// Directions of the sky at a sensor
-    #[arg(long, value_name = "N", default_value_t = Casting::default().sky_rays, value_parser = clap::value_parser!(u32).range(8..=1 << 24))]
-    pub sky_rays: u32,
+    /// Directions of the sky at a sensor, whatever the tolerance
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=1 << 24))]
+    pub sky_rays: Option<u32>,
     #[command(flatten)]
     pub flags: Flags,
     /// Folder for the files; made if it is not there
@@ -92,19 +101,28 @@ pub fn run(args: &DaylightArgs, cancel: &Cancel) -> Result<()> {
     let begin = Instant::now();
     let model = if is_black(&scene) { None } else { Some(modelled(&scene, &plan, &rays, &stages, cancel)?) };
     let prepare_seconds = begin.elapsed().as_secs_f64();
-    let (voxel_m, notes, warnings) = told(&scene, model.as_ref(), args.method);
+    let (voxel_m, mut notes, warnings) = told(&scene, model.as_ref(), args.method);
 
     let begin = Instant::now();
     let moment = args.date.zip(args.time).map(|(date, time)| date.to_datetime(time));
     let steps = steps(&outdoors, moment, cancel).with_context(|| scene.name.clone())?;
     let settings = MapSettings { model: outdoors.model, haze: outdoors.haze, ..MapSettings::default() };
     let map = ExposureMap::build(&steps, &settings, &stages, cancel)?;
-    let casting = Casting { sun_rays: args.sun_rays, sky_rays: args.sky_rays, seed: plan.settings.seed };
     let points = daylight::points(&scene.sensors);
-    let mut exposures = cast(&rays, &points, &map, outdoors.north_rad, casting, &stages, cancel)?;
-    let light = Skylight::new(&map, outdoors.north_rad);
-    let asked = Asked { method: args.method, points: &points, exposures: &exposures, light: &light, casting };
-    let reflected = reflected(model, &rays, &asked, &stages, cancel)?;
+    let seed = plan.settings.seed;
+    let north_rad = outdoors.north_rad;
+    let ground = Ground { scene: &scene, rays: &rays, map: &map, north_rad, seed };
+    let tolerance = args.tolerance.or(scene.model.tolerance).unwrap_or(TOLERANCE);
+    let (casting, mut modelled) = casting(args, &ground, &points, tolerance, &stages, cancel)?;
+    let mut exposures = cast(&rays, &points, &map, north_rad, casting, &stages, cancel)?;
+    let light = Skylight::new(&map, north_rad);
+    let asked =
+        Asked { method: args.method, points: &points, exposures: &exposures, light: &light, casting, tolerance };
+    let (reflected, networks) = reflected(model, &rays, &asked, &stages, cancel)?;
+    if networks.last().is_some_and(|last| last.error > tolerance - 1.0) {
+        notes.push(format!("no network is inside the tolerance of {tolerance} by its own error: the finest is taken"));
+    }
+    modelled.extend(networks);
     reflect::add(&mut exposures, &reflected);
     let seconds = begin.elapsed().as_secs_f64();
 
@@ -128,6 +146,7 @@ pub fn run(args: &DaylightArgs, cancel: &Cancel) -> Result<()> {
         beam_lm_w: efficacies.beam_lm_w,
         sky_lm_w: efficacies.sky_lm_w,
         sensors: found.rows(&scene),
+        modelled: &modelled,
         notes: &notes,
         warnings: &warnings,
     };
@@ -138,6 +157,28 @@ pub fn run(args: &DaylightArgs, cancel: &Cancel) -> Result<()> {
         folder.list();
     }
     if args.flags.json { say(&format!("{json}\n")) } else { say(&text(&report)) }
+}
+
+/// The rays that are typed, else the fewest inside the tolerance, and what was tried for it.
+fn casting(
+    args: &DaylightArgs,
+    ground: &Ground,
+    points: &[Point],
+    tolerance: f64,
+    stages: &Stages,
+    cancel: &Cancel,
+) -> Result<(Casting, Vec<Modelled>)> {
+    let truth = Casting { seed: ground.seed, ..Casting::default() };
+    if args.sun_rays.is_some() || args.sky_rays.is_some() {
+        let sky_rays = args.sky_rays.unwrap_or(truth.sky_rays);
+        return Ok((Casting { sun_rays: args.sun_rays, sky_rays, ..truth }, Vec::new()));
+    }
+    let by_rays = Way::for_points(ground.seed).map(|way| if let Way::Rays(_) = way { Some(way) } else { None });
+    let ways: Vec<Way> = by_rays.into_iter().flatten().collect();
+    let chosen = choose(ground, daylight::cast::Asked::all(points), None, &ways, tolerance, stages, cancel)?;
+    let tried = chosen.tried.iter().map(|tried| Modelled { what: tried.way.words(), error: tried.error });
+    let casting = if let Way::Rays(casting) = chosen.way.way { casting } else { truth };
+    Ok((casting, tried.collect()))
 }
 
 /// The steps of the period, or of a moment.
@@ -192,6 +233,7 @@ struct Asked<'a> {
     exposures: &'a [Exposure],
     light: &'a Skylight<'a>,
     casting: Casting,
+    tolerance: f64,
 }
 
 fn reflected(
@@ -200,11 +242,17 @@ fn reflected(
     asked: &Asked,
     stages: &Stages,
     cancel: &Cancel,
-) -> Result<Vec<Reflected>> {
-    let &Asked { method, points, exposures, light, casting } = asked;
-    Ok(match (model, method) {
-        (None, _) => by_nothing(rays, points, light, casting, cancel)?,
-        (Some(model), Method::Network) => by_network(&model, points, light, &Quality::MEDIUM, casting, stages, cancel)?,
-        (Some(model), _) => by_heuristic(method, model, (points, exposures), light, casting, stages, cancel)?,
-    })
+) -> Result<(Vec<Reflected>, Vec<Modelled>)> {
+    let &Asked { method, points, exposures, light, casting, tolerance } = asked;
+    let model = match model {
+        None => return Ok((by_nothing(rays, points, light, casting, cancel)?, Vec::new())),
+        Some(model) if method == Method::Network => model,
+        Some(model) => {
+            let found = by_heuristic(method, model, (points, exposures), light, casting, stages, cancel)?;
+            return Ok((found, Vec::new()));
+        }
+    };
+    let (found, tried) = by_fitting_network(&model, points, exposures, light, casting, tolerance, stages, cancel)?;
+    let tried = tried.into_iter().map(|tried| Modelled { what: tried.name.to_owned(), error: tried.error });
+    Ok((found, tried.collect()))
 }

@@ -24,8 +24,18 @@ pub struct Report<'a> {
     pub beam_lm_w: f64,
     pub sky_lm_w: f64,
     pub sensors: Vec<Row<'a>>,
+    pub modelled: &'a [Modelled],
     pub notes: &'a [String],
     pub warnings: &'a [String],
+}
+
+/// Rays or a network that were tried for the tolerance: the last of each kind was taken.
+#[derive(Serialize)]
+pub struct Modelled {
+    /// Which.
+    pub what: String,
+    /// How far off it is, a share of the mean: of rays the RMSE against many, of a network its own error.
+    pub error: f64,
 }
 
 /// A sensor of it: kWh/m2, hours of sun, lux and percent.
@@ -111,10 +121,13 @@ pub fn text(report: &Report) -> String {
         || String::from("kWh/m2 over the period"),
         |moment| format!("kW/m2 at {}", moment.replace('T', " ")),
     );
+    let tried = report.modelled.iter().map(|tried| format!("tried {}: {:.1}% off\n", tried.what, 100.0 * tried.error));
+    let tried: String = tried.collect();
     format!(
         "{}: {period}; global horizontal {:.figures$}, direct normal {:.figures$}, diffuse horizontal {:.figures$}\n\
          by rays and {}: prepared in {:.2} s, estimated in {:.2} s\n\
-         lux: the mean of {:.0} lit hour(s), {:.0} lm/W of the beam and {:.0} of the sky; factor: under an overcast sky\n\n{table}",
+         lux: the mean of {:.0} lit hour(s), {:.0} lm/W of the beam and {:.0} of the sky; factor: under an overcast sky\n\
+         {tried}\n{table}",
         report.scene,
         report.ghi,
         report.dni,

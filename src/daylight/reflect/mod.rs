@@ -8,6 +8,7 @@
 //! Limits: those of the network; walls are Lambertian, glazing passes light straight on, openings that the voxels close let
 //! nothing reflected through. Ground beyond the mesh is black.
 
+pub mod choose;
 pub mod heuristics;
 pub mod landing;
 pub mod openings;

@@ -56,7 +56,7 @@ impl Rings {
             std::iter::successors(Some(0.5 * texel_m), next).take(samples + 1)
         };
         // The least growth that reaches out, by halves.
-        let (mut low, mut high) = (0.0_f32, reach_m / texel_m);
+        let (mut low, mut high) = (0.0_f32, 2.0 * reach_m / texel_m);
         for _ in 0..32 {
             let growth = 0.5 * (low + high);
             let reaches = edges(growth).last().is_some_and(|edge_m| edge_m >= reach_m);

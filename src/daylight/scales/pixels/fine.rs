@@ -126,7 +126,7 @@ impl Steps {
                 let off_m = at_m - from_m;
                 let squared = off_m.length_squared();
                 // Nothing is hit there, or it is far away.
-                if !(squared < self.reach_m * self.reach_m) {
+                if squared.is_nan() || squared >= self.reach_m * self.reach_m {
                     before_m = Vec3::NAN;
                     continue;
                 }
