@@ -1,13 +1,13 @@
 //! Does exposure cost more where a city has more faces?
 //!
-//!     cargo bench --bench faces [-- MOST_THOUSANDS]
+//!     cargo bench --bench faces [-- MOST_THOUSANDS] [FOLDER]
 //!
 //! A made city of 300 x 300 m with 7,000 to 770,000 faces (or up to about so many thousands): always the same 144 houses, of 8 to
 //! 26 m, and on their walls and roofs ever smaller boxes, so that what is seen of the sky hardly changes. 10,000 points, the
 //! same in all of them, half a metre before walls, over roofs and over the ground. For each: the time that is needed before
 //! the first point (the rays' tree; the zenith's depth map), points a second by rays (256 suns, 256 directions) and by maps
 //! (16 directions of 16 samples, peeled), and the mean sky view factor of both. Medians of three runs, clear year at 42
-//! degrees north.
+//! degrees north. Into a folder that is named go the chart and the table of all that, `faces.svg` and `faces.csv`.
 
 use glam::Vec3;
 use lightvein::daylight::cast::{Asked, Casting, cast};
@@ -16,11 +16,15 @@ use lightvein::daylight::scales::sums::SkySums;
 use lightvein::daylight::scales::zenith::Zenith;
 use lightvein::daylight::scales::{Scan, expose};
 use lightvein::daylight::{Exposure, Point};
+use lightvein::export::chart::loglog::{self, Mark, Panel};
+use lightvein::export::whole_file;
 use lightvein::job::{Cancel, Quiet};
 use lightvein::rays::Rays;
 use lightvein::scene::{Mesh, Scene, Site};
 use lightvein::sky::map::{ExposureMap, MapSettings};
 use lightvein::sky::site::Outdoors;
+use std::io::{self, Write};
+use std::path::PathBuf;
 use std::time::Instant;
 
 const RUNS: usize = 3;
@@ -32,6 +36,9 @@ const HOUSES: usize = 12;
 const PLOT_M: f32 = 25.0;
 const STREET_M: f32 = 9.0;
 
+/// Ground beyond them. With 50 m a plot would be 64 texels of the map, and all walls would miss their texels' middles alike.
+const GROUND_M: f32 = 46.3;
+
 /// How far the points stand off; relief sticks out less.
 const OFF_M: f32 = 0.5;
 
@@ -39,9 +46,30 @@ const OFF_M: f32 = 0.5;
 const RELIEF_SHARE: f32 = 0.2;
 const RELIEF_M: f32 = 0.3;
 
+/// What is measured of a city.
+struct Row {
+    faces: usize,
+    tree_s: f64,
+    rays_s: f64,
+    rays_svf: f64,
+    depths_s: f64,
+    maps_s: f64,
+    maps_svf: f64,
+}
+
 fn main() {
-    let most =
-        std::env::args().skip(1).find_map(|arg| arg.parse::<usize>().ok()).map_or(usize::MAX, |most| 1000 * most);
+    let (counts, others): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).filter(|arg| !arg.starts_with("--")).partition(|arg| arg.parse::<usize>().is_ok());
+    let most = counts.first().and_then(|count| count.parse::<usize>().ok()).map_or(usize::MAX, |most| 1000 * most);
+    let rows = rows(most);
+    if let Some(folder) = others.first().map(PathBuf::from) {
+        whole_file(&folder.join("faces.svg"), |out| draw(out, &rows)).unwrap();
+        whole_file(&folder.join("faces.csv"), |out| write_table(out, &rows)).unwrap();
+    }
+}
+
+/// Measures the cities of up to so many faces, and tells them.
+fn rows(most: usize) -> Vec<Row> {
     let site = Site { latitude_deg: Some(42.0), longitude_deg: Some(0.0), turbidity: Some(3.0), ..Site::default() };
     let outdoors = Outdoors::of(&site, None).unwrap();
     let settings = MapSettings { model: outdoors.model, haze: outdoors.haze, ..MapSettings::default() };
@@ -57,7 +85,8 @@ fn main() {
         "{:>8} {:>9} {:>10} {:>7} {:>11} {:>10} {:>7}",
         "faces", "tree, ms", "rays, 1/s", "svf", "depths, ms", "maps, 1/s", "svf"
     );
-    for faces in FACES.into_iter().filter(|&faces| faces <= most) {
+    let cities = FACES.into_iter().filter(|&faces| faces <= most);
+    let row = |faces: usize| {
         let scene = Scene { mesh: city(faces), ..Scene::default() };
         let (tree_s, rays) = median(|| Rays::new(&scene));
         let casting = Casting { sun_rays: Some(256), sky_rays: 256, seed: 0 };
@@ -66,17 +95,53 @@ fn main() {
         let scan = Scan { samples: 16, reach_m: None, overhangs: Overhangs::Peeled, seed: 0 };
         let (maps_s, by_maps) =
             median(|| expose(&zenith, &sums, Asked::all(&points), &scan, &Quiet, &Cancel::new()).unwrap());
+        let faces = scene.mesh.triangles.len();
+        let [rays_svf, maps_svf] = [&by_rays, &by_maps].map(|found| mean_svf(found));
         println!(
-            "{:>8} {:>9.1} {:>10.0} {:>7.4} {:>11.1} {:>10.0} {:>7.4}",
-            scene.mesh.triangles.len(),
+            "{faces:>8} {:>9.1} {:>10.0} {rays_svf:>7.4} {:>11.1} {:>10.0} {maps_svf:>7.4}",
             1e3 * tree_s,
             POINTS as f64 / rays_s,
-            mean_svf(&by_rays),
             1e3 * depths_s,
             POINTS as f64 / maps_s,
-            mean_svf(&by_maps)
         );
+        Row { faces, tree_s, rays_s, rays_svf, depths_s, maps_s, maps_svf }
+    };
+    cities.map(row).collect()
+}
+
+/// Cost of a point, and of what is made beforehand, against faces.
+fn draw(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
+    let marks = |series: &str, cost: fn(&Row) -> f64| {
+        let mark = |row: &Row| Mark {
+            series: series.to_owned(),
+            label: String::new(),
+            at: [row.faces as f64, cost(row)],
+            is_hollow: false,
+        };
+        rows.iter().map(mark).collect::<Vec<_>>()
+    };
+    let panel = |title: &str, unit: &str, marks: [Vec<Mark>; 2]| Panel {
+        title: title.to_owned(),
+        axes: ["faces".to_owned(), unit.to_owned()],
+        marks: marks.concat(),
+        has_front: false,
+    };
+    let [rays, maps] = ["rays (256 suns + 256 directions; tree)", "maps (layers, 16 x 16; depths of 1024 texels)"];
+    let each =
+        [marks(rays, |row| 1e6 * row.rays_s / POINTS as f64), marks(maps, |row| 1e6 * row.maps_s / POINTS as f64)];
+    let once = [marks(rays, |row| 1e3 * row.tree_s), marks(maps, |row| 1e3 * row.depths_s)];
+    let panels = [panel("a point", "microseconds a point", each), panel("made beforehand, once", "milliseconds", once)];
+    loglog::write(out, &panels, 2, "10,000 points in a made city, the same in all; lower is better")
+}
+
+/// A row a city; points a second, seconds beforehand, mean sky view factors.
+fn write_table(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
+    writeln!(out, "faces,tree_s,rays_per_s,rays_svf,depths_s,maps_per_s,maps_svf")?;
+    for Row { faces, tree_s, rays_s, rays_svf, depths_s, maps_s, maps_svf } in rows {
+        let [rays_per_s, maps_per_s] = [rays_s, maps_s].map(|seconds| POINTS as f64 / seconds);
+        writeln!(out, "{faces},{tree_s:.4},{rays_per_s:.0},{rays_svf:.4},{depths_s:.4},{maps_per_s:.0},{maps_svf:.4}")?;
     }
+    Ok(())
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
@@ -143,7 +208,7 @@ fn sides() -> Vec<Side> {
 fn city(faces: usize) -> Mesh {
     let sides = sides();
     let area_m2: f32 = sides.iter().map(Side::area_m2).sum();
-    let half_m = HOUSES as f32 * PLOT_M / 2.0 + 50.0;
+    let half_m = HOUSES as f32 * PLOT_M / 2.0 + GROUND_M;
     let ground = Side {
         corner_m: Vec3::new(-half_m, -half_m, 0.0),
         across_m: Vec3::X * 2.0 * half_m,

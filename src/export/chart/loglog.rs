@@ -15,7 +15,10 @@ const LEFT: f64 = 74.0;
 const RIGHT: f64 = 16.0;
 const ABOVE: f64 = 30.0;
 const BELOW: f64 = 50.0;
-const LEGEND: f64 = 40.0;
+const LEGEND: f64 = 56.0;
+
+/// Room of a name in the legend: its mark, and each letter.
+const NAME: [f64; 2] = [40.0, 7.8];
 
 /// Room beyond the outermost marks, as a factor of the value.
 const MARGIN: f64 = 1.5;
@@ -66,7 +69,7 @@ pub fn front(at: &[[f64; 2]]) -> Vec<bool> {
     at.iter().map(|&this| !at.iter().any(|&other| beats(other, this))).collect()
 }
 
-/// Writes panels, so many in a row; `says` stands in the legend behind the names of the series.
+/// Writes panels, so many in a row; `says` stands under the names of the series.
 ///
 /// # Errors
 /// What the writer says.
@@ -79,7 +82,9 @@ pub fn write(out: &mut dyn Write, panels: &[Panel], columns: usize, says: &str) 
         }
     }
     let [cell_wide, cell_high] = [LEFT + WIDTH + RIGHT, ABOVE + HEIGHT + BELOW];
-    let (width, height) = (columns as f64 * cell_wide, LEGEND + panels.len().div_ceil(columns) as f64 * cell_high);
+    let names: f64 = series.iter().map(|name| name_wide(name)).sum();
+    let width = (columns as f64 * cell_wide).max(LEFT + names);
+    let height = LEGEND + panels.len().div_ceil(columns) as f64 * cell_high;
     writeln!(
         out,
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" font-family="DejaVu Sans, Verdana, Arial, sans-serif" font-size="13">"#
@@ -99,9 +104,13 @@ fn draw_legend(out: &mut dyn Write, series: &[&str], says: &str) -> io::Result<(
     for (number, name) in series.iter().enumerate() {
         draw_mark(out, by_order(number), [left + 6.0, 20.0], 5.5, false, false)?;
         writeln!(out, r#"<text x="{:.1}" y="24.5">{}</text>"#, left + 17.0, escaped(name))?;
-        left += 40.0 + 7.8 * name.len() as f64;
+        left += name_wide(name);
     }
-    writeln!(out, r##"<text x="{left:.1}" y="24.5" font-size="12" fill="#444444">{}</text>"##, escaped(says))
+    writeln!(out, r##"<text x="{LEFT}" y="46" font-size="12" fill="#444444">{}</text>"##, escaped(says))
+}
+
+fn name_wide(name: &str) -> f64 {
+    NAME[0] + NAME[1] * name.chars().count() as f64
 }
 
 fn draw_panel(out: &mut dyn Write, panel: &Panel, series: &[&str], [left, top]: [f64; 2]) -> io::Result<()> {
