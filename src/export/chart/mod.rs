@@ -7,6 +7,7 @@
 mod axes;
 mod csv;
 mod labels;
+pub mod loglog;
 mod panel;
 mod style;
 

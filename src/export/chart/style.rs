@@ -39,6 +39,17 @@ pub fn style(method: &str) -> Style {
     Style { colour, shape }
 }
 
+/// Colours of series in their order: those of Okabe & Ito, grey for their yellow, which is too pale for lines.
+const COLOURS: [&str; 8] = ["#777777", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#000000", "#cc79a7"];
+
+/// Shapes of series in their order.
+const SHAPES: [Shape; 6] = [Shape::Square, Shape::Down, Shape::Up, Shape::Diamond, Shape::Circle, Shape::Cross];
+
+/// The look of a series by its number.
+pub fn by_order(number: usize) -> Style {
+    Style { colour: COLOURS[number % COLOURS.len()], shape: SHAPES[number % SHAPES.len()] }
+}
+
 /// Half the size of the mark of a point without voxels, and of one with the scene's own.
 const HALF: f64 = 4.5;
 
@@ -48,7 +59,7 @@ pub fn half_size(point: &Point, own_m: Option<f32>) -> f64 {
     HALF * coarser.clamp(0.25, 4.0).powf(0.45)
 }
 
-/// Draws a mark: hollow for a scaled point, ringed for one on the front, pale elsewhere.
+/// Draws a mark: hollow for a scaled or smoothed point, ringed for one on the front, pale elsewhere.
 ///
 /// # Errors
 /// What the writer says.
