@@ -256,7 +256,8 @@ fn heights(line: &Line, rings: &Rings, overhangs: Overhangs) -> Seen {
         let this = top(&sample);
         if !is_covered {
             horizon.raise(this, |distance_m| line.sample(distance_m, ring.level).as_ref().map(top));
-        } else if this.is_before {
+        } else if this.is_before || this.rise_m == NOTHING_M {
+            // Where the mesh has no ground nothing covers either.
             is_covered = this.rise_m > 0.0;
             high = if is_covered { this.rise_m / this.along_m } else { high };
             horizon.before = this;
@@ -373,6 +374,28 @@ mod tests {
                 assert!((coarse - want).abs() < 0.03, "{overhangs:?}, {away_m} m, turn {turn}: {coarse} for {want}");
             }
         }
+    }
+
+    #[test]
+    fn a_cover_ends_where_there_is_no_ground() {
+        // A roof 4 m over the point, which ends 5 m away; nothing else but a curb at 30 m.
+        let corners_m = |[low, high]: [f32; 2], z: f32| {
+            [(low, -10.0, z), (high, -10.0, z), (high, 10.0, z), (low, 10.0, z)].map(Vec3::from)
+        };
+        let mesh = Mesh {
+            positions_m: [corners_m([0.0, 10.0], 5.0), corners_m([35.0, 36.0], 0.0)].concat(),
+            triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+            material_of: vec![0; 4],
+        };
+        let zenith = Zenith::new(&Scene { mesh, ..Scene::default() }, 360, false, &Cancel::new()).unwrap();
+        let point = Point { position_m: Vec3::new(5.0, 0.0, 1.0), normal: Some(Vec3::X) };
+        let seer = super::super::Seer::new(&zenith, &point);
+        let rings = Rings::new(&zenith, 1000, 36.0, 0.5);
+        let mut seen = Vec::new();
+        let all = [f32::NEG_INFINITY, f32::INFINITY];
+        bands(&zenith, &rings, Overhangs::Opening, &seer, Vec2::X, all, |band| seen.push(band));
+        assert!(seen.len() == 1 && seen[0].low == 0.0, "{seen:?}");
+        assert!((seen[0].high - sine_of_slope(4.0 / 5.0)).abs() < 0.01, "{seen:?}");
     }
 
     #[test]
