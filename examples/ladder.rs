@@ -32,6 +32,10 @@ fn main() -> Result<()> {
     );
     for path in words {
         let scene = Scene::load(Path::new(&path), &Quiet, &Cancel::new())?;
+        if scene.reference.is_empty() {
+            println!("{:24} skipped: it has no reference", scene.name);
+            continue;
+        }
         let rays = Arc::new(Rays::new(&scene));
         let model = match scene.model.voxel_m {
             Some(voxel_m) => Model::build(&scene, rays, voxel_m, u64::MAX, &Quiet, &Cancel::new())?,
