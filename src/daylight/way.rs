@@ -1,7 +1,7 @@
 //! By which way is exposure found?
 //!
 //! From the cheapest to the dearest: the share of the sky that is seen times what an open plane would receive; maps of heights,
-//! coarse or fine ([scales](super::scales)); for a camera's pixels both scales; rays, some or all ([cast](super::cast)). A way
+//! coarse or fine ([scales]); for a camera's pixels both scales; rays, some or all ([cast](super::cast)). A way
 //! that needs maps makes them once ([`Way::prepare`]) and is then asked any number of times.
 
 use super::camera::Buffers;

@@ -11,12 +11,13 @@
 //! Limits: what the camera does not see hides nothing; the thickness of things is not known, only surfaces that go on from one
 //! step to the next are held to be closed between them.
 
+use super::super::azimuth_rad;
 use super::super::sight::between;
 use super::{Covered, Look, MOST_DIRECTIONS, Surfaces, TURNS};
 use crate::job::{Cancel, Cancelled};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3A};
 use rayon::prelude::*;
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::f32::consts::TAU;
 
 /// The farthest step, pixels: nearer things are looked at more coarsely.
 const FARTHEST_PX: f32 = 48.0;
@@ -24,12 +25,25 @@ const FARTHEST_PX: f32 = 48.0;
 /// Two places are of one surface where they are no farther apart than this many times what their pixels are.
 const JOINED: f32 = 3.0;
 
+/// Things that rise less than this over a pixel's plane, by the sine, are its own surface.
+const LEAST_RISE: f32 = 0.02;
+
+/// A step to a pixel.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    /// Columns to the right.
+    across: i32,
+    /// Rows down.
+    down: i32,
+    length_px: f32,
+}
+
 /// The steps of all directions of a picture.
 #[derive(Debug, Clone)]
 pub struct Steps {
     directions: usize,
-    /// Columns and rows to each step, those of a direction in a row.
-    steps: Vec<[i32; 2]>,
+    /// Those of a direction in a row.
+    steps: Vec<Step>,
     samples: usize,
     reach_m: f32,
 }
@@ -45,7 +59,8 @@ impl Steps {
                 let part = (sample + 1) as f32 / look.fine_samples as f32;
                 // Closer together near the pixel, and at least one apart.
                 let at = (sample + 1) as f32 + (reach_px - look.fine_samples as f32) * part * part;
-                steps.push([cosine, sine].map(|axis| (at * axis).round() as i32));
+                let [across, down] = [cosine, sine].map(|axis| (at * axis).round() as i32);
+                steps.push(Step { across, down, length_px: Vec2::new(across as f32, down as f32).length() });
             }
         }
         Self { directions, steps, samples: look.fine_samples, reach_m: look.fine_reach_m }
@@ -64,7 +79,7 @@ impl Steps {
             let mut hidden = vec![0.0; width];
             for steps in self.steps.chunks(self.samples.max(1)) {
                 horizon.fill(0.0);
-                for &[across, down] in steps {
+                for &Step { across, down, .. } in steps {
                     let other = row as i64 + i64::from(down);
                     let columns = columns_within(width, across);
                     if (0..height as i64).contains(&other) && !columns.is_empty() {
@@ -111,40 +126,41 @@ impl Steps {
     pub fn covered(&self, surfaces: &Surfaces, pixel: usize, turn: usize) -> Covered {
         let [width, height] = surfaces.size;
         let (column, row) = ((pixel % width) as i32, (pixel / width) as i32);
-        let (from_m, normal) = (surfaces.position_m(pixel), surfaces.normal(pixel));
+        let [from_m, normal] = surfaces.place(pixel);
         let sectors = self.directions as f32 / TAU;
         let turned = turn as f32 / TURNS as f32 - 0.5;
+        let most = self.reach_m * self.reach_m;
         let mut covered = [0; MOST_DIRECTIONS];
         for steps in self.steps.chunks(self.samples.max(1)) {
-            let (mut before_m, mut before_sine, mut before_px) = (from_m, 0.0_f32, 0.0);
-            for &[across, down] in steps {
+            let (mut before_m, mut before_px) = (Vec3A::ZERO, 0.0);
+            for &Step { across, down, length_px } in steps {
                 let (x, y) = (column + across, row + down);
                 if x < 0 || y < 0 || x >= width as i32 || y >= height as i32 {
                     break;
                 }
-                let at_m = surfaces.position_m(y as usize * width + x as usize);
+                let [at_m, _] = surfaces.place(y as usize * width + x as usize);
                 let off_m = at_m - from_m;
                 let squared = off_m.length_squared();
                 // Nothing is hit there, or it is far away.
-                if squared.is_nan() || squared >= self.reach_m * self.reach_m {
-                    before_m = Vec3::NAN;
+                if squared.is_nan() || squared >= most {
+                    before_m = Vec3A::NAN;
                     continue;
                 }
-                let px = Vec2::new(across as f32, down as f32).length();
-                let sine = off_m.z / (squared + 1e-12).sqrt();
-                let pixel_m = surfaces.pixel_m * (px - before_px).max(1.0);
-                let joined = at_m.distance_squared(before_m) < (JOINED * pixel_m).powi(2);
-                if off_m.dot(normal) > 0.02 * squared.sqrt() && off_m.z > 0.0 {
-                    let half = 0.5 * pixel_m / (squared.sqrt() + pixel_m);
-                    let (low, high) = if joined {
-                        (sine.min(before_sine), sine.max(before_sine))
-                    } else {
-                        (sine - half, sine + half)
-                    };
-                    let sector = (azimuth_rad(off_m.x, off_m.y) * sectors - turned).rem_euclid(self.directions as f32);
-                    covered[(sector as usize).min(self.directions - 1)] |= between(low, high);
+                let rises_m = off_m.dot(normal);
+                if off_m.z > 0.0 && rises_m > 0.0 && rises_m * rises_m > LEAST_RISE * LEAST_RISE * squared {
+                    let sine = |off_m: Vec3A| off_m.z / (off_m.length_squared() + 1e-12).sqrt();
+                    let pixel_m = surfaces.pixel_m * (length_px - before_px).max(1.0);
+                    let (this, half) = (sine(off_m), 0.5 * pixel_m / (squared.sqrt() + pixel_m));
+                    let is_joined = off_m.distance_squared(before_m) < (JOINED * pixel_m).powi(2);
+                    let other = if is_joined { sine(before_m) } else { this };
+                    let (low, high) =
+                        if is_joined { (this.min(other), this.max(other)) } else { (this - half, this + half) };
+                    // Half a sector at most lies before the first one: it belongs to the last.
+                    let sector = azimuth_rad(off_m.x, off_m.y) * sectors - turned;
+                    let sector = if sector < 0.0 { self.directions - 1 } else { sector as usize % self.directions };
+                    covered[sector] |= between(low, high);
                 }
-                (before_m, before_sine, before_px) = (at_m, sine, px);
+                (before_m, before_px) = (off_m, length_px);
             }
         }
         covered
@@ -157,30 +173,9 @@ fn columns_within(width: usize, across: i32) -> std::ops::Range<usize> {
     left.min(width)..width.saturating_sub(right).max(left.min(width))
 }
 
-/// The azimuth of a level direction, clockwise from +Y, within a quarter of a degree; a third of the time of the exact one.
-fn azimuth_rad(x: f32, y: f32) -> f32 {
-    let (a, b) = (x.abs(), y.abs());
-    let ratio = a.min(b) / a.max(b).max(f32::MIN_POSITIVE);
-    // Rajan et al. 2006, "Efficient approximations for the arctangent function", equation 7.
-    let octant = ratio * (FRAC_PI_4 + 0.273 * (1.0 - ratio));
-    let quarter = if a > b { FRAC_PI_2 - octant } else { octant };
-    let half = if y < 0.0 { PI - quarter } else { quarter };
-    if x < 0.0 { TAU - half } else { half }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn azimuths_run_clockwise_from_the_north() {
-        for number in 0..720 {
-            let exact = number as f32 * TAU / 720.0;
-            let found = azimuth_rad(exact.sin() * 3.0, exact.cos() * 3.0);
-            let off = (found - exact + PI).rem_euclid(TAU) - PI;
-            assert!(off.abs() < 0.25_f32.to_radians(), "{exact} {found}");
-        }
-    }
 
     #[test]
     fn steps_stay_in_the_picture() {

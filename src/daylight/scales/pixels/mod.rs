@@ -15,11 +15,11 @@ pub mod smooth;
 pub mod taps;
 
 use super::sight::{each_open, sine_of_slope};
-use super::sums::{ROWS, SkySums};
+use super::sums::SkySums;
 use super::{before_plane, turn_of};
 use crate::daylight::camera::Buffers;
 use crate::job::{Cancel, Cancelled};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use taps::{JITTERS, Taps};
@@ -94,6 +94,8 @@ pub struct Surfaces {
     pub positions_m: [Vec<f32>; 3],
     /// Unit normals that face the camera.
     pub normals: [Vec<f32>; 3],
+    /// Places and normals once more, each in one piece: for what looks at pixels here and there.
+    places: Vec<[Vec3A; 2]>,
     /// How wide a pixel is at the picture's median depth, metres.
     pub pixel_m: f32,
 }
@@ -119,15 +121,14 @@ impl Surfaces {
             pixel_m: median_m / buffers.camera.focal_px(),
             positions_m: std::array::from_fn(|axis| part(axis, |point| point.0)),
             normals: std::array::from_fn(|axis| part(axis, |point| point.1)),
+            places: points.iter().map(|&(at_m, normal)| [at_m.into(), normal.into()]).collect(),
         }
     }
 
-    fn position_m(&self, pixel: usize) -> Vec3 {
-        Vec3::from_array(std::array::from_fn(|axis| self.positions_m[axis][pixel]))
-    }
-
-    fn normal(&self, pixel: usize) -> Vec3 {
-        Vec3::from_array(std::array::from_fn(|axis| self.normals[axis][pixel]))
+    /// The place and the normal of a pixel.
+    #[inline]
+    fn place(&self, pixel: usize) -> [Vec3A; 2] {
+        self.places.get(pixel).copied().unwrap_or([Vec3A::NAN, Vec3A::ZERO])
     }
 }
 
@@ -153,6 +154,10 @@ pub struct PixelSums {
     /// Unit vectors of each sector's middle.
     along: Vec<Vec2>,
 }
+
+/// Rows of the sums that pixels read, between which they interpolate: few enough for the sums of all sectors to stay near the
+/// processor.
+const ROWS: usize = 64;
 
 /// How many ways pixels are turned.
 pub const TURNS: usize = TILE * TILE;
@@ -273,7 +278,7 @@ fn at_pixel(
 ) -> Received {
     let (column, row) = (pixel % surfaces.size[0], pixel / surfaces.size[0]);
     let tile = column % TILE + TILE * (row % TILE);
-    let (position_m, normal) = (surfaces.position_m(pixel), surfaces.normal(pixel));
+    let [position_m, normal] = surfaces.place(pixel).map(Vec3::from);
     let turn = turn_of(sums.directions, TURNS, normal, SPREAD[tile] as f32 / TURNS as f32);
     let place = taps.place(position_m, normal, look.opening);
     let covered = covered(turn);

@@ -25,14 +25,14 @@ fn averaged(seen: &[Received], surfaces: &Surfaces, stride: usize) -> Vec<Receiv
     means.par_chunks_mut(width.max(1)).enumerate().for_each(|(row, means)| {
         for (column, mean) in means.iter_mut().enumerate() {
             let pixel = row * width + column;
-            let (at_m, normal) = (surfaces.position_m(pixel), surfaces.normal(pixel));
+            let [at_m, normal] = surfaces.place(pixel);
             let (place, side) = if stride == 1 { (column, width) } else { (row, height) };
             let (mut sum, mut count) = (Received::default(), 0.0_f32);
             // One more on one side than on the other: a whole tile.
             for other in place.saturating_sub(TILE / 2 - 1)..(place + TILE / 2 + 1).min(side) {
                 let other = pixel + other * stride - place * stride;
-                let plane_m = (surfaces.position_m(other) - at_m).dot(normal).abs();
-                if plane_m <= off_m && normal.dot(surfaces.normal(other)) >= SAME_NORMAL {
+                let [other_m, other_normal] = surfaces.place(other);
+                if (other_m - at_m).dot(normal).abs() <= off_m && normal.dot(other_normal) >= SAME_NORMAL {
                     sum = sum.and(seen[other]);
                     count += 1.0;
                 }
