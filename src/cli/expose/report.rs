@@ -226,7 +226,12 @@ impl Summary {
         let mean = self.values.get(Quantity::Total.name()).map_or(0.0, |total| total.mean);
         let share = if mean > 0.0 { format!(", {:.1}% of the mean", 100.0 * self.error / mean) } else { String::new() };
         let within = if self.in_solid > 0 { format!("; {} lie inside matter", self.in_solid) } else { String::new() };
-        format!("{}{within}\nstandard error of a point {:.1} kWh/m2{share}\n\n{table}", self.places, self.error)
+        // Views and isotropic factors have no error of their own.
+        let error = match self.error > 0.0 {
+            true => format!("standard error of a point {:.1} kWh/m2{share}\n", self.error),
+            false => String::new(),
+        };
+        format!("{}{within}\n{error}\n{table}", self.places)
     }
 }
 
