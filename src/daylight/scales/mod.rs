@@ -70,7 +70,7 @@ impl Seer {
 /// What each point receives, in their order: by [`SkySums::directions`] directions. Half of the difference between the even
 /// and the odd directions is told as the error.
 ///
-/// Some 4 ns a sample and thread.
+/// Some 30 us a point and thread for 64 directions of 64 samples (`cargo bench --bench scales`).
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -82,7 +82,7 @@ pub fn expose(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<Exposure>, Cancelled> {
-    /// Points between looks at the clock of the progress bar.
+    /// Points between looks at whether to stop.
     const CHUNK: usize = 256;
     progress.begin("maps", asked.points.len() as u64);
     let farthest_m = zenith.farthest_m();

@@ -159,11 +159,6 @@ impl Zenith {
         (doublings.max(0.0) as usize).min(self.levels.len() - 1)
     }
 
-    /// Whether all surfaces are kept.
-    pub fn is_peeled(&self) -> bool {
-        self.levels.first().is_some_and(|level| !level.columns.is_empty())
-    }
-
     /// How many texels have something that floats.
     pub fn floating(&self) -> usize {
         let columns = self.levels.first().map_or(&[][..], |level| &level.columns);
