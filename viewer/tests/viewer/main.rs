@@ -1,0 +1,1 @@
+//! The viewer as its user meets it.
