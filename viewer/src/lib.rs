@@ -17,4 +17,7 @@ pub mod outdoors;
 pub mod paint;
 pub mod request;
 pub mod results;
+pub mod sides;
 pub mod state;
+pub mod welcome;
+pub mod worker;
