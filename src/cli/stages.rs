@@ -123,11 +123,13 @@ pub fn available_bytes() -> Option<u64> {
 /// Processor time that all threads of this process have had, seconds, as Linux tells it; `None` elsewhere.
 pub fn processor_seconds() -> Option<f64> {
     let threads = std::fs::read_dir("/proc/self/task").ok()?;
-    let nanoseconds = threads.map(|thread| {
+    // A thread may end while the list is read.
+    let nanoseconds = threads.filter_map(|thread| {
         let text = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
         text.split_whitespace().next()?.parse::<f64>().ok()
     });
-    Some(nanoseconds.collect::<Option<Vec<f64>>>()?.iter().sum::<f64>() / 1e9)
+    let nanoseconds: Vec<f64> = nanoseconds.collect();
+    (!nanoseconds.is_empty()).then(|| nanoseconds.iter().sum::<f64>() / 1e9)
 }
 
 /// The entry of that name in one of Linux's tables of sizes.

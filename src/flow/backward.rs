@@ -35,17 +35,49 @@ pub fn estimate(
 /// What one light gives.
 fn from_light<'a>(lit: &'a Lit<'a>) -> AtProbe<'a> {
     Box::new(move |probe, node| {
-        let model = lit.model;
-        let straight_share = model.straight_share(probe.position_m, lit.light);
+        let straight_share = lit.model.straight_share(probe.position_m, lit.light);
         if straight_share > 0.0 {
             let straight = arrival(lit, probe, 0.0, lit.light.position_m);
             return Arrival { irradiance_w_m2: straight_share * straight.irradiance_w_m2, ..straight };
         }
         let farthest = farthest_seen(lit, probe, node);
-        let end_m = model.node_m(farthest);
-        let along_m = lit.tree.distance_m[farthest.index()] + lit.light.to_node_m;
-        arrival(lit, probe, along_m, end_m)
+        arrival(lit, probe, beyond_m(lit, farthest), lit.model.node_m(farthest))
     })
+}
+
+/// The way that this heuristic takes from a probe to a light: what it makes its answer of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Way {
+    /// The nodes of the shortest path, from the probe's own to the light's.
+    pub nodes: Vec<NodeIndex>,
+    /// The length of the path from probe to light by all its nodes, metres.
+    pub path_m: f64,
+    /// The node nearest to the light that the probe sees; its own where it sees none.
+    pub farthest: NodeIndex,
+    /// Whether the probe sees the light itself, and how much of it: 0 to 1.
+    pub seen_share: f64,
+    /// The distance that the answer is made of, metres: straight to the light where it is seen, else straight to the farthest
+    /// node and along the path from there.
+    pub d_all_m: f64,
+}
+
+/// The way from a probe to the light of `lit`; `None` where the probe has no node or no path leads to the light.
+pub fn way(lit: &Lit, probe: &Probe) -> Option<Way> {
+    let node = probe.place.ok().filter(|&node| lit.tree.reaches(node))?;
+    let farthest = farthest_seen(lit, probe, node);
+    let seen_share = lit.model.straight_share(probe.position_m, lit.light);
+    let straight_m = |to_m: glam::Vec3| f64::from(to_m.distance(probe.position_m));
+    let d_all_m = match seen_share > 0.0 {
+        true => straight_m(lit.light.position_m),
+        false => beyond_m(lit, farthest) + straight_m(lit.model.node_m(farthest)),
+    };
+    let path_m = beyond_m(lit, node) + straight_m(lit.model.node_m(node));
+    Some(Way { nodes: lit.tree.path_from(node).collect(), path_m, farthest, seen_share, d_all_m })
+}
+
+/// The way from a node to the light, metres.
+fn beyond_m(lit: &Lit, node: NodeIndex) -> f64 {
+    lit.tree.distance_m[node.index()] + lit.light.to_node_m
 }
 
 /// The node nearest to the light, along the path from the probe's own `node`, that the probe sees; `node` where it sees none.
@@ -80,6 +112,7 @@ fn arrival(lit: &Lit, probe: &Probe, along_m: f64, end_m: glam::Vec3) -> Arrival
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flow::paths::PathTree;
     use crate::flow::tests::{FLUX_W, close, field, lamp, modelled, room, sensor, two_rooms};
     use crate::light::Status;
     use crate::scene::Light;
@@ -101,6 +134,25 @@ mod tests {
             assert!(reading.direction().distance(DVec3::new(-0.8, 0.0, 0.6)) < 1e-6);
         }
         assert_eq!((field.readings[3].value_w_m2, field.readings[3].status), (0.0, Status::Dark));
+    }
+
+    #[test]
+    fn the_way_is_what_the_answer_is_made_of() {
+        let sensors = [Vec3::new(3.2, 1.0, 0.6), Vec3::new(6.0, 0.7, 1.5)].map(|at_m| sensor(at_m, None));
+        let model = modelled(&two_rooms(), vec![lamp(LIGHT_M, FLUX_W)], sensors.into());
+        let field = field(&model, estimate);
+        let (scene, model) = &model;
+        let tree = PathTree::from(&model.skeleton, model.shining[0].place.unwrap());
+        let lit = Lit { model, light: &model.shining[0], tree: &tree };
+        for ((reading, probe), sees) in field.readings.iter().zip(model.probes_at_sensors(scene)).zip([true, false]) {
+            let way = way(&lit, &probe).unwrap();
+            close(reading.value_w_m2, FLUX_W / (4.0 * PI * way.d_all_m * way.d_all_m));
+            assert_eq!(way.seen_share > 0.0, sees);
+            assert!(way.nodes.contains(&way.farthest) && way.path_m >= way.d_all_m - 1e-6, "{way:?}");
+            assert_eq!((way.nodes.first().copied(), way.nodes.last()), (probe.place.ok(), Some(&tree.root)));
+        }
+        let lost = Probe { place: Err(Status::InSolid), ..model.probes_at_sensors(scene)[0] };
+        assert_eq!(way(&lit, &lost), None);
     }
 
     #[test]

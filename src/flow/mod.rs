@@ -13,6 +13,7 @@ pub mod network;
 pub mod paths;
 pub mod sequence;
 pub mod solve;
+pub mod veins;
 
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Field, Reading, Settings, Status};

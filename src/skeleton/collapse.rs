@@ -8,7 +8,7 @@
 //! Surfaces all go; curves that mean something stay. An edge is born in the layer that takes its last face. There the void
 //! was `d` wide around it (its distance) and as wide as `w` beside it (its opening): the ball of `w` goes on for `w - d`
 //! layers. An edge that outlives its birth `t` by that much and `t` more belongs to a branch longer than the void is
-//! wide and is kept for good (Chaussard, Noël, Biri & Couprie, DGCI 2013, with `LEAST_LIFE` added).
+//! wide and is kept for good (Chaussard, Noël, Biri & Couprie, DGCI 2013, with [`Filter::least_life_layers`] added).
 //!
 //! Work goes with the bricks that change: a brick whose surroundings did not change in one layer changes in none until
 //! they do. The passes of a direction are done together, brick by brick, in the order in which that comes to the same as
@@ -20,6 +20,7 @@ mod border;
 mod peel;
 
 use super::complex::{Complex, Layout};
+use super::filter::Filter;
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::voxel::brick::{self, FIRST, LAST};
 use crate::voxel::levels::Levels;
@@ -27,10 +28,6 @@ use border::Border;
 use glam::IVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-
-/// Layers that an edge must outlive its birth by, at least: a curve of a few cells in a void too small to say otherwise
-/// is noise. Any value from 0 (the published rule) to 6 gives nearly the same.
-const LEAST_LIFE: u32 = 3;
 
 /// Fewer bricks than this are not worth sharing with another thread.
 const GRAIN: usize = 512;
@@ -47,6 +44,7 @@ pub fn collapse(
     distance: &Levels,
     opening: &Levels,
     anchors: &[IVec3],
+    filter: &Filter,
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
@@ -71,7 +69,7 @@ pub fn collapse(
         let news = border.update(&layout, cells, &candidates, |(brick, axis, bit)| {
             let corner = layout.corner(brick as usize, bit);
             let life = opening.at_edge(corner, axis) - distance.at_edge(corner, axis);
-            let until = (u32::from(life) + 2 * now).max(now + LEAST_LIFE);
+            let until = (u32::from(life) + 2 * now).max(now + filter.least_life_layers);
             (until + 1, (brick, axis, 1 << bit))
         });
         let mut active = Vec::with_capacity(candidates.len());

@@ -6,7 +6,7 @@ use super::matter::Matter;
 use super::nearest::Nearest;
 use super::necks::{self, Neck};
 use super::sections::{self, Section};
-use super::{curve::Curve, thin};
+use super::{curve::Curve, filter::Filter, thin_by};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::rays::Rays;
 use crate::space::{Lattice, VoxelIndex};
@@ -108,7 +108,7 @@ impl Skeleton {
     /// # Errors
     /// [`Cancelled`] when `cancel` was raised.
     pub fn build(voxels: &Voxels, rays: &Rays, progress: &dyn Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
-        Self::build_from(voxels.lattice, &voxels.void, rays, progress, cancel)
+        Self::build_from(voxels.lattice, &voxels.void, &Filter::default(), rays, progress, cancel)
     }
 
     /// Thins a void and cuts its skeleton into cells. `rays` are those of the scene; without a surface in them all sizes
@@ -122,11 +122,12 @@ impl Skeleton {
     pub fn build_from(
         lattice: Lattice,
         void: &BitGrid,
+        filter: &Filter,
         rays: &Rays,
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<Self, Cancelled> {
-        let curve = thin(void, progress, cancel)?;
+        let curve = thin_by(filter, void, progress, cancel)?;
         let matter = Matter { lattice, void, distance: &curve.distance, rays };
         let corners: Vec<IVec3> = curve.vertices.iter().map(|vertex| vertex.corner).collect();
         let links = Links::new(corners.len(), &curve.edges);

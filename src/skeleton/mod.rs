@@ -12,6 +12,7 @@ pub mod cells;
 pub mod collapse;
 pub mod complex;
 pub mod curve;
+mod filter;
 mod graph;
 pub mod links;
 mod matter;
@@ -23,6 +24,7 @@ pub mod tie;
 pub mod topology;
 mod validate;
 
+pub use filter::Filter;
 pub use graph::{Cell, Edge, Node, Shape, Skeleton};
 pub use necks::Neck;
 
@@ -60,18 +62,33 @@ use curve::Curve;
 /// # Ok::<(), Cancelled>(())
 /// ```
 pub fn thin(void: &BitGrid, progress: &dyn Progress, cancel: &Cancel) -> Result<Curve, Cancelled> {
+    thin_by(&Filter::default(), void, progress, cancel)
+}
+
+/// The same with a filter of one's own.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn thin_by(filter: &Filter, void: &BitGrid, progress: &dyn Progress, cancel: &Cancel) -> Result<Curve, Cancelled> {
     let board = staged(progress, "distance", || Chessboard::new(void, cancel))?;
     let opening = staged(progress, "opening", || opening::opening(void, &board, cancel))?;
     let mut complex = staged(progress, "complex", || Complex::closure(void));
     staged(progress, "ties", || tie::tie(&mut complex, void, cancel))?;
-    let anchors = staged(progress, "anchors", || anchors::anchors(void, &board));
+    let anchors = staged(progress, "anchors", || match filter.keeps_middles {
+        true => anchors::anchors(void, &board),
+        false => Vec::new(),
+    });
     staged(progress, "collapse", || {
-        collapse::collapse(&mut complex, &board.distance, &opening, &anchors, progress, cancel)
+        collapse::collapse(&mut complex, &board.distance, &opening, &anchors, filter, progress, cancel)
     })?;
     Ok(staged(progress, "prune", || {
         let mut curve = Curve::new(&complex, &anchors, board.distance, opening);
-        prune::prune(&mut curve);
-        prune::regrow(&mut curve);
+        if filter.cuts_branches {
+            prune::prune(&mut curve);
+        }
+        if filter.grows_ends {
+            prune::regrow(&mut curve);
+        }
         curve
     }))
 }

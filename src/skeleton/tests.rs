@@ -20,7 +20,7 @@ fn collapsed(void: &BitGrid) -> (Complex, Topology, usize) {
     let ties = tie::tie(&mut complex, void, &never).unwrap();
     let tied = of_complex(&complex);
     let anchors = anchors::anchors(void, &board);
-    collapse::collapse(&mut complex, &board.distance, &opening, &anchors, &Quiet, &never).unwrap();
+    collapse::collapse(&mut complex, &board.distance, &opening, &anchors, &Filter::default(), &Quiet, &never).unwrap();
     (complex, tied, ties)
 }
 

@@ -27,7 +27,9 @@ fn carved(size: [usize; 3], rooms: &[Block], solids: &[Block]) -> BitGrid {
 fn skeleton(void: &BitGrid) -> Skeleton {
     let lattice = Lattice { origin_m: Vec3::ZERO, voxel_m: 0.1, size: void.size() };
     let rays = Rays::new(&Scene::default());
-    let skeleton = Skeleton::build_from(lattice, void, &rays, &Quiet, &Cancel::new()).unwrap();
+    let skeleton =
+        Skeleton::build_from(lattice, void, &crate::skeleton::Filter::default(), &rays, &Quiet, &Cancel::new())
+            .unwrap();
     assert_eq!(skeleton.validate(void), Ok(()));
     skeleton
 }

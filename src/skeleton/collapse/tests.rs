@@ -82,7 +82,7 @@ impl Plain {
                     let axis = plane.trailing_zeros() as usize;
                     let life = u32::from(opening.at_edge(at, axis) - distance.at_edge(at, axis));
                     let key = (self.index(at).unwrap(), plane);
-                    until.entry(key).or_insert((life + 2 * now).max(now + LEAST_LIFE));
+                    until.entry(key).or_insert((life + 2 * now).max(now + Filter::default().least_life_layers));
                 }
             }
             for ((index, plane), _) in until.iter().filter(|(_, until)| **until < now) {
@@ -139,7 +139,7 @@ fn it_equals_the_definition_cell_by_cell() {
         let anchors = anchors(&void, &board);
         let mut complex = Complex::closure(&void);
         let mut plain = Plain::new(&complex);
-        collapse(&mut complex, &board.distance, &opening, &anchors, &Quiet, &never).unwrap();
+        collapse(&mut complex, &board.distance, &opening, &anchors, &Filter::default(), &Quiet, &never).unwrap();
         plain.run(&board.distance, &opening, &anchors);
         for at in plain.places() {
             for plane in 0..8 {
@@ -169,7 +169,10 @@ fn slabs_of_any_number_leave_the_same() {
         let left = |threads: usize| {
             let mut complex = Complex::closure(&void);
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| collapse(&mut complex, &board.distance, &opening, &anchors, &Quiet, &never)).unwrap();
+            pool.install(|| {
+                collapse(&mut complex, &board.distance, &opening, &anchors, &Filter::default(), &Quiet, &never)
+            })
+            .unwrap();
             complex
         };
         let one = left(1);
