@@ -270,3 +270,24 @@ fn noise_on_walls_makes_few_branches() {
     let after = thinned(&void);
     assert!(tips(&after) <= 4 && tips(&before) > tips(&after), "{} tips, {} before", tips(&after), tips(&before));
 }
+
+/// A corridor with a side passage: what each switch of the filter takes, and that none changes the topology.
+#[test]
+fn a_filter_takes_branches_and_keeps_the_topology() {
+    let void = boxes([62, 34, 10], &[([2, 10, 2], [60, 16, 8]), ([28, 16, 2], [34, 32, 8])]);
+    let by = |filter: Filter| thin_by(&filter, &void, &Quiet, &Cancel::new()).unwrap();
+    let normal = by(Filter::default());
+    let variants = [
+        Filter { least_life_layers: Filter::MOST_LAYERS, ..Filter::default() },
+        Filter { keeps_middles: false, ..Filter::default() },
+        Filter { cuts_branches: false, ..Filter::default() },
+        Filter { grows_ends: false, ..Filter::default() },
+    ];
+    let [long, loose, uncut, short] = variants.map(by);
+    for curve in [&normal, &long, &loose, &uncut, &short] {
+        assert_eq!(of_curve(curve), of_void(&void));
+    }
+    assert!(long.vertices.len() < normal.vertices.len(), "{} {}", long.vertices.len(), normal.vertices.len());
+    assert!(loose.vertices.len() <= normal.vertices.len());
+    assert!(uncut.vertices.len() >= normal.vertices.len() && short.vertices.len() < normal.vertices.len());
+}
