@@ -2,13 +2,13 @@
 //!
 //! Viridis (default) and cividis read right in grey and with any colour vision (van der Walt, Smith & Firing 2015;
 //! Nuñez, Anderton & Renslow 2018); turbo (Mikhailov 2019) shows more steps and is for who wants them; the diverging
-//! map is ColorBrewer's red-yellow-blue, safe for colour-blind eyes, for ratios about one. Missing values are grey, which
-//! no map contains.
+//! map is ColorBrewer's red-yellow-blue, safe for colour-blind eyes, for ratios about one. What has no value is of a
+//! grey that no map comes near.
 
 use serde::{Deserialize, Serialize};
 
-/// Colour of what has no value, sRGB.
-pub const GREY: [u8; 3] = [128, 128, 128];
+/// Colour of what has no value, sRGB. Lighter than the middle, where cividis is all but grey.
+pub const GREY: [u8; 3] = [164, 164, 164];
 /// Share of the values below the top of a default range: a few outliers must not flatten the rest.
 const PERCENTILE: f64 = 0.995;
 /// Decades that a default range of flux spans.
@@ -162,6 +162,17 @@ mod tests {
         for map in [ColourMap::Viridis, ColourMap::Cividis] {
             let lumas: Vec<f32> = (0..=32).map(|step| luma(map.rgb(step as f32 / 32.0))).collect();
             assert!(lumas.windows(2).all(|pair| pair[0] < pair[1]), "{map:?}: {lumas:?}");
+        }
+    }
+
+    #[test]
+    fn no_map_comes_near_the_grey_of_missing_values() {
+        for map in ColourMap::ALL {
+            for step in 0..=256 {
+                let colour = map.rgb(step as f32 / 256.0);
+                let apart = colour.iter().zip(GREY).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+                assert!(apart >= 40, "{map:?} has {colour:?}");
+            }
         }
     }
 
