@@ -271,10 +271,10 @@ fn noise_on_walls_makes_few_branches() {
     assert!(tips(&after) <= 4 && tips(&before) > tips(&after), "{} tips, {} before", tips(&after), tips(&before));
 }
 
-/// A room with a niche: what each switch of the filter takes, and that none changes the topology.
+/// A corridor with a side passage: what each switch of the filter takes, and that none changes the topology.
 #[test]
 fn a_filter_takes_branches_and_keeps_the_topology() {
-    let void = boxes([40, 24, 12], &[([2, 2, 2], [38, 12, 10]), ([18, 12, 3], [22, 20, 9])]);
+    let void = boxes([62, 34, 10], &[([2, 10, 2], [60, 16, 8]), ([28, 16, 2], [34, 32, 8])]);
     let by = |filter: Filter| thin_by(&filter, &void, &Quiet, &Cancel::new()).unwrap();
     let normal = by(Filter::default());
     let variants = [

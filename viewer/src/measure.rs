@@ -2,7 +2,7 @@
 
 use crate::colour::{self, ColourMap, Scale};
 use crate::results::Results;
-use lightvein::daylight::quantity::Quantity;
+use lightvein::daylight::Quantity;
 use lightvein::light::{Reading, Status};
 use serde::{Deserialize, Serialize};
 
@@ -110,12 +110,14 @@ impl Measure {
 
     /// A scale fitted to its values.
     pub fn fitted(self, values: &[f32], map: ColourMap) -> Scale {
-        match self {
-            Self::Ratio => colour::ratio_range(values, map),
-            _ if self.is_logarithmic() => colour::flux_range(values, map),
-            Self::Svf => Scale { map, low: 0.0, high: 1.0, logarithmic: false },
-            _ => colour::linear_range(values, map),
-        }
+        let values = values.iter().copied();
+        let (low, high) = match self {
+            Self::Ratio => colour::ratio_range(values),
+            Self::Svf => (0.0, 1.0),
+            _ if self.is_logarithmic() => colour::flux_range(values),
+            _ => colour::linear_range(values),
+        };
+        Scale { map, low, high, logarithmic: self.is_logarithmic() }
     }
 
     /// All its values in the results, missing ones as NaN; empty where there are none.
@@ -128,9 +130,11 @@ impl Measure {
                 let at_faces = results.faces.iter().flat_map(|faces| &faces.field.readings);
                 at_nodes.chain(at_sensors).chain(at_faces).map(shown).collect()
             }
-            Self::Flux => {
-                estimate.iter().flat_map(|estimate| &estimate.through_edges_w).map(|flux_w| flux_w.abs() as f32).collect()
-            }
+            Self::Flux => estimate
+                .iter()
+                .flat_map(|estimate| &estimate.through_edges_w)
+                .map(|flux_w| flux_w.abs() as f32)
+                .collect(),
             Self::Radius => {
                 let nodes = results.model.iter().flat_map(|model| model.skeleton.graph.node_weights());
                 nodes.map(|node| node.radius_m).collect()
@@ -142,7 +146,9 @@ impl Measure {
                 });
                 nodes.collect()
             }
-            Self::Ratio => ratios(results).into_iter().map(|ratio| ratio.map_or(f32::NAN, |ratio| ratio as f32)).collect(),
+            Self::Ratio => {
+                ratios(results).into_iter().map(|ratio| ratio.map_or(f32::NAN, |ratio| ratio as f32)).collect()
+            }
             _ => results.outdoors.values(self),
         }
     }

@@ -144,7 +144,7 @@ impl State {
             running: Running::Idle,
             layers,
             scales: BTreeMap::new(),
-            camera: Camera::default(),
+            camera: Camera::fitted((glam::Vec3::ZERO, glam::Vec3::ONE), 1.0),
             picked: None,
             hovered: None,
             log: Log::default(),

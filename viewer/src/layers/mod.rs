@@ -1,7 +1,7 @@
 //! Which layers are on and how each looks: plain data that the panels change and `draw` turns into a picture.
 
 use crate::measure::Measure;
-use lightvein::daylight::quantity::Quantity;
+use lightvein::daylight::Quantity;
 use serde::{Deserialize, Serialize};
 
 /// How the mesh is drawn.
@@ -213,9 +213,11 @@ impl Layers {
         let voxels = (self.voxels && self.voxel_show == VoxelShow::Distance).then_some(Measure::Distance);
         let mut all: Vec<Measure> = [mesh, nodes, sensors, edges, voxels].into_iter().flatten().collect();
         let mut seen = Vec::new();
-        all.retain(|measure| !seen.contains(measure) && {
-            seen.push(*measure);
-            true
+        all.retain(|measure| {
+            !seen.contains(measure) && {
+                seen.push(*measure);
+                true
+            }
         });
         all
     }
