@@ -16,8 +16,8 @@ use lightvein::daylight::surface::{Patch, PatchError, default_patch_m, patches, 
 use lightvein::daylight::way::{Ground, Prepared, Way};
 use lightvein::daylight::{self, Point};
 use lightvein::job::{Cancel, Progress};
-use lightvein::scene::{Scene, Site};
 use lightvein::scene::parts::Edit;
+use lightvein::scene::{Scene, Site};
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -180,7 +180,11 @@ fn modelled(
     let loaded = cache.loaded.as_ref().map_or(shape, |loaded| &loaded.scene).clone();
     let How { filter, .. } = request.how;
     // Where a bare mesh got its light belongs to it from then on.
-    let mut scene = edited(cache.bare.as_ref().filter(|_| request.edits.parts.is_empty()).unwrap_or(shape), &request.edits, &loaded);
+    let mut scene = edited(
+        cache.bare.as_ref().filter(|_| request.edits.parts.is_empty()).unwrap_or(shape),
+        &request.edits,
+        &loaded,
+    );
     let asked_m = request.how.voxel_m.or(scene.model.voxel_m).or(cache.chosen_voxel_m);
     if let Some(known) = &cache.modelled
         && known.edits == request.edits
@@ -200,7 +204,8 @@ fn modelled(
             voxel_m
         }
     };
-    let known = cache.modelled.as_ref().filter(|known| known.voxel_m == voxel_m && known.edits.parts == request.edits.parts);
+    let known =
+        cache.modelled.as_ref().filter(|known| known.voxel_m == voxel_m && known.edits.parts == request.edits.parts);
     let sources = Sources::of(&scene);
     let lights_stay = known.is_some_and(|known| positions(&known.scene) == positions(&scene));
     progress.begin("voxels", 0);
@@ -284,7 +289,10 @@ fn estimates(
     if matches!(method, Method::Network | Method::Trace) {
         let first = asking.estimate(Method::Backward, None)?;
         let keeps_older = results.estimate.as_ref().is_some_and(|older| !older.is_first_pass)
-            && results.estimate.as_ref().is_some_and(|older| older.at_nodes.readings.len() == first.at_nodes.readings.len());
+            && results
+                .estimate
+                .as_ref()
+                .is_some_and(|older| older.at_nodes.readings.len() == first.at_nodes.readings.len());
         // While a slider is dragged the older estimate of the same method says more than the first pass of another.
         if !keeps_older {
             results.estimate = Some(Arc::new(Estimate { is_first_pass: true, ..first }));

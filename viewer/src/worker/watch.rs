@@ -73,7 +73,8 @@ impl Watch {
     pub fn running(&self) -> Running {
         let run = self.lock();
         let Some(run) = &*run else { return Running::Idle };
-        let names: Vec<&str> = run.open.iter().filter_map(|open| Some(run.ended.get(open.slot)?.name.as_str())).collect();
+        let names: Vec<&str> =
+            run.open.iter().filter_map(|open| Some(run.ended.get(open.slot)?.name.as_str())).collect();
         let known = run.open.iter().rev().find(|open| open.total > 0);
         let share = known.map(|open| open.done as f32 / open.total as f32);
         Running::Stage { name: names.join(", "), share, seconds: run.began.elapsed().as_secs_f64() }
