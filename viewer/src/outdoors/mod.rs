@@ -4,15 +4,17 @@
 //! [`draw`] makes pictures of both. All figures are the library's: `lightvein::sky` and `lightvein::daylight`.
 
 pub mod compute;
+pub mod draw;
 pub mod sky;
+pub mod sun;
 
 use crate::measure::Measure;
 use crate::state::State;
 use glam::Vec2;
 use jiff::civil::{Date, DateTime, date};
 use lightvein::daylight::Exposure;
-use lightvein::daylight::camera::{Buffers, Camera};
 use lightvein::daylight::Quantity;
+use lightvein::daylight::camera::{Buffers, Camera};
 use lightvein::daylight::surface::Patch;
 use lightvein::daylight::way::Prepared;
 use lightvein::light::Status;
