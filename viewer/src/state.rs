@@ -121,6 +121,8 @@ pub struct State {
     pub picked: Option<Picked>,
     /// What the pointer is over.
     pub hovered: Option<Picked>,
+    /// The ways from what is picked to each light.
+    pub ways: Vec<crate::panels::inspector::WayToLight>,
     /// What was told.
     pub log: Log,
     /// What the panels asked for since the last frame.
@@ -147,6 +149,7 @@ impl State {
             camera: Camera::fitted((glam::Vec3::ZERO, glam::Vec3::ONE), 1.0),
             picked: None,
             hovered: None,
+            ways: Vec::new(),
             log: Log::default(),
             actions: Vec::new(),
             kept,
