@@ -15,6 +15,7 @@ pub mod log;
 pub mod measure;
 pub mod outdoors;
 pub mod paint;
+pub mod panels;
 pub mod request;
 pub mod results;
 pub mod sides;

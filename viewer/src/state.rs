@@ -124,6 +124,8 @@ pub struct State {
     pub hovered: Option<Picked>,
     /// Where the arrows stand that what is picked is dragged by, and how long they are, metres; `None` without.
     pub gizmo: Option<(Vec3, f32)>,
+    /// The ways from what is picked to each light.
+    pub ways: Vec<crate::panels::inspector::WayToLight>,
     /// What was told.
     pub log: Log,
     /// What the panels asked for since the last frame.
@@ -151,6 +153,7 @@ impl State {
             picked: None,
             hovered: None,
             gizmo: None,
+            ways: Vec::new(),
             log: Log::default(),
             actions: Vec::new(),
             kept,
