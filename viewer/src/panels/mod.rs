@@ -4,14 +4,14 @@
 //! number is one step to undo. All else it sets at once. Every widget has a name for screen readers: its own text, or that of
 //! its row ([`row`]).
 
-//pub mod chart;
-//pub mod help;
+pub mod chart;
+pub mod help;
 pub mod inspector;
 pub mod layers;
-//pub mod log;
+pub mod log;
 pub mod scene;
-//pub mod sensors;
-//pub mod stages;
+pub mod sensors;
+pub mod stages;
 
 use crate::state::State;
 use egui::{Response, RichText, Ui};

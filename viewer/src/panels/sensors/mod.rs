@@ -8,6 +8,7 @@ mod table;
 pub use table::{Column, Direction, Table};
 
 use super::number;
+use crate::stamp::Stamp;
 use crate::state::{Action, Picked, State};
 use egui::{Align, Layout, RichText, Sense, Ui};
 use egui_extras::TableBuilder;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 /// What is kept of the table from frame to frame.
 #[derive(Clone)]
 struct Kept {
-    table: Table,
+    stamp: Stamp,
     sorted: (Column, Direction),
     order: Arc<Vec<u32>>,
 }
@@ -29,7 +30,8 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let key = ui.id().with("sensors");
     let kept: Option<Kept> = ui.data(|data| data.get_temp(key));
     let mut sorted = kept.as_ref().map_or((Column::Number, Direction::Up), |kept| kept.sorted);
-    let still = kept.filter(|kept| kept.table.is_same(&table));
+    let stamp = Stamp::of(&state.results);
+    let still = kept.filter(|kept| kept.stamp.is(&stamp));
 
     tools(ui, state, &table);
     let columns = table.columns();
@@ -41,7 +43,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     grid(ui, state, &table, &columns, &order, &mut sorted);
 
     let order = if sorted == before { order } else { Arc::new(table.order(sorted.0, sorted.1)) };
-    ui.data_mut(|data| data.insert_temp(key, Kept { table, sorted, order }));
+    ui.data_mut(|data| data.insert_temp(key, Kept { stamp, sorted, order }));
 }
 
 fn tools(ui: &mut Ui, state: &mut State, table: &Table) {

@@ -1,0 +1,42 @@
+//! Which results something was made of, so that it is made again when they change and not before.
+
+use crate::results::{Answer, Estimate, Faces, Results};
+use lightvein::model::Model;
+use lightvein::scene::Scene;
+use std::sync::{Arc, Weak};
+
+/// Names results without keeping them in memory.
+#[derive(Debug, Clone, Default)]
+pub struct Stamp {
+    scene: Weak<Scene>,
+    model: Weak<Model>,
+    estimate: Weak<Estimate>,
+    faces: Weak<Faces>,
+    answers: Weak<Vec<Answer>>,
+}
+
+impl Stamp {
+    /// The stamp of these results; sun and sky are not in it.
+    pub fn of(results: &Results) -> Self {
+        Self {
+            scene: weak(results.scene.as_ref()),
+            model: weak(results.model.as_ref()),
+            estimate: weak(results.estimate.as_ref()),
+            faces: weak(results.faces.as_ref()),
+            answers: Arc::downgrade(&results.answers),
+        }
+    }
+
+    /// Whether both are of the very same results.
+    pub fn is(&self, other: &Self) -> bool {
+        self.scene.ptr_eq(&other.scene)
+            && self.model.ptr_eq(&other.model)
+            && self.estimate.ptr_eq(&other.estimate)
+            && self.faces.ptr_eq(&other.faces)
+            && self.answers.ptr_eq(&other.answers)
+    }
+}
+
+fn weak<T>(shared: Option<&Arc<T>>) -> Weak<T> {
+    shared.map(Arc::downgrade).unwrap_or_default()
+}
