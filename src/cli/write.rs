@@ -2,7 +2,8 @@
 
 use super::stages::Stages;
 use super::tell;
-use crate::export::{field, graphml, plan, ply, skeleton_json, swc, voxels, whole_file};
+use crate::export::analysed::files;
+use crate::export::{self, whole_file};
 use crate::flow::Estimator;
 use crate::job::{Cancel, Progress};
 use crate::light::{Field, Settings};
@@ -76,19 +77,10 @@ pub fn analysis(folder: &mut Folder, analysed: &Analysed, stages: &Stages, cance
     let faces_m = model.faces_to_void(scene);
     let at_faces = ask(&model.probes_at_faces(&faces_m))?;
 
-    let skeleton = &model.skeleton;
-    folder.file("voxels.npy", |out| voxels::write_npy(out, &model.voxels))?;
-    folder.file("voxels.json", |out| voxels::write_legend(out, scene, &model.voxels))?;
-    folder.file("skeleton.json", |out| skeleton_json::write(out, scene, skeleton, at_nodes.as_ref()))?;
-    folder.file("skeleton.ply", |out| ply::write_skeleton(out, scene, skeleton, at_nodes.as_ref()))?;
-    folder.file("skeleton.graphml", |out| graphml::write(out, scene, skeleton))?;
-    folder.file("skeleton.swc", |out| swc::write(out, scene, skeleton))?;
-    folder.file("field.csv", |out| field::write_csv(out, scene, at_sensors))?;
-    if let Some(at_nodes) = &at_nodes {
-        folder.file("plan.svg", |out| plan::write(out, scene, model, at_nodes))?;
-    }
-    if let Some(at_faces) = &at_faces {
-        folder.file("field.ply", |out| ply::write_mesh_field(out, scene, &faces_m, at_faces))?;
+    let at_faces = at_faces.as_ref().map(|field| (&faces_m[..], field));
+    let files = files(&export::analysed::Analysed { scene, model, at_sensors, at_nodes: at_nodes.as_ref(), at_faces });
+    for (name, write) in files {
+        folder.file(name, write)?;
     }
     stages.end();
     Ok(())

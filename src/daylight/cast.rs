@@ -50,6 +50,18 @@ impl Default for Casting {
     }
 }
 
+impl Casting {
+    /// Fewer rays for the faces or vertices of a mesh, which are many and are looked at together.
+    pub const fn of_faces(seed: u64) -> Self {
+        Self { sun_rays: Some(64), sky_rays: 128, seed }
+    }
+
+    /// Few rays for the pixels of a picture.
+    pub const fn of_pixels(seed: u64) -> Self {
+        Self { sun_rays: Some(16), sky_rays: 32, seed }
+    }
+}
+
 /// Points to be asked.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked<'a> {

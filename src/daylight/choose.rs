@@ -19,6 +19,12 @@ pub const SAMPLES: usize = 96;
 /// Rays by which they are judged: these are within 0.2% of all suns and of many directions.
 const JUDGE: Casting = Casting { sun_rays: Some(2048), sky_rays: 2048, seed: 0 };
 
+/// Tolerance of what is read, where nobody says another.
+pub const SENSOR_TOLERANCE: f64 = 1.02;
+
+/// Tolerance of what is looked at and not read.
+pub const PICTURE_TOLERANCE: f64 = 1.1;
+
 /// Tolerances below this are not judged: the dearest way is taken.
 pub const LEAST_TOLERANCE: f64 = 1.004;
 

@@ -3,6 +3,7 @@
 //! Writers take any `Write` and never see a path; [`whole_file`] is the one place that opens files: it writes beside the
 //! target and renames, so that a failed or interrupted run leaves nothing half-written.
 
+pub mod analysed;
 pub mod chart;
 pub mod curves;
 pub mod daylight;

@@ -57,7 +57,7 @@ struct Sheet {
 
 impl Sheet {
     fn of(model: &Model) -> Self {
-        let Voxels { lattice, void, .. } = &model.voxels;
+        let Voxels { lattice, void, .. } = &*model.voxels;
         let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
         for VoxelIndex(at) in void.iter() {
             for (axis, along) in [at.x, at.y].into_iter().enumerate() {

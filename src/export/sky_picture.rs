@@ -4,7 +4,7 @@
 //! black. The PNG is tone-mapped: luminance Y becomes 1 - exp(-Y / white), so that what is as bright as `white` takes 63%; the
 //! colour stays, mixed with grey as far as a screen needs it; all in sRGB's code. Its margin names north, east, south and west.
 
-use crate::sky::colour::{luminance, srgb_code};
+use crate::sky::colour::{luminance, tone_mapped};
 use crate::sky::picture::Picture;
 use image::codecs::hdr::HdrEncoder;
 use image::codecs::openexr::OpenExrEncoder;
@@ -63,7 +63,7 @@ pub fn write_png(out: &mut dyn Write, picture: &Picture, exposure: Exposure) -> 
     for (at, rgb) in picture.rgb.iter().enumerate() {
         let place = (at / picture.size_px + margin_px) * size_px + at % picture.size_px + margin_px;
         if let Some(rgb) = rgb {
-            let [r, g, b] = shown(rgb.map(f64::from), white);
+            let [r, g, b] = tone_mapped(rgb.map(f64::from), white);
             rgba[place] = [r, g, b, u8::MAX];
         }
     }
@@ -121,21 +121,6 @@ fn white(picture: &Picture, exposure: Exposure) -> f64 {
             levels.get(at as usize).copied().unwrap_or(0.0)
         }
     }
-}
-
-/// The tone mapping of one colour.
-fn shown(rgb: [f64; 3], white: f64) -> [u8; 3] {
-    let seen = luminance(rgb);
-    if seen <= 0.0 || white <= 0.0 {
-        return [0; 3];
-    }
-    let grey = 1.0 - (-seen / white).exp();
-    let mapped = rgb.map(|value| value * grey / seen);
-
-    // Towards grey until the strongest channel fits.
-    let strongest = mapped.iter().copied().fold(grey, f64::max);
-    let colour = if strongest > 1.0 { (1.0 - grey) / (strongest - grey) } else { 1.0 };
-    mapped.map(|value| (255.0 * srgb_code(grey + (value - grey) * colour)).round() as u8)
 }
 
 /// A side as the encoders want it.
@@ -197,18 +182,18 @@ mod tests {
         assert!((below(white(&picture, Exposure::Percentile(0.8))) - 0.8).abs() < 0.01);
         assert_eq!(white(&picture, Exposure::White(7.0)), 7.0);
         // 1 - 1/e is code 208: 255 (1.055 x 0.63212^(1/2.4) - 0.055) = 208.2.
-        assert_eq!(shown([7.0; 3], 7.0), [208; 3]);
+        assert_eq!(tone_mapped([7.0; 3], 7.0), [208; 3]);
     }
 
     #[test]
     fn bright_colours_fade_to_white_and_keep_their_order() {
         let orange = [3.0, 1.5, 0.2];
         for white in [0.001, 0.1, 1.0, 100.0] {
-            let [r, g, b] = shown(orange, white);
+            let [r, g, b] = tone_mapped(orange, white);
             assert!(r >= g && g >= b, "{white}: {r} {g} {b}");
         }
-        assert_eq!(shown(orange, 0.001), [255; 3]);
-        assert_eq!(shown([0.0; 3], 1.0), [0; 3]);
+        assert_eq!(tone_mapped(orange, 0.001), [255; 3]);
+        assert_eq!(tone_mapped([0.0; 3], 1.0), [0; 3]);
     }
 
     #[test]

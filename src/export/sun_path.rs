@@ -76,8 +76,14 @@ impl SunPath {
         Ok(Self { place: *place, year, hours: (0..24 * days).map(hour).collect::<Result<_, SunError>>()?, paths })
     }
 
-    /// The sun at one hour of the clock, every few days of the year.
-    fn at_hour(&self, hour: usize) -> Vec<(DateTime, Sun)> {
+    /// The paths of the 21st of seven months, from December to June, which stand for all twelve; each with its name, ten
+    /// minutes from point to point, day and night.
+    pub fn days(&self) -> impl Iterator<Item = (&'static str, &[Sun])> {
+        PATHS.iter().zip(&self.paths).map(|((_, name, _), path)| (*name, path.as_slice()))
+    }
+
+    /// The sun at one hour of the clock, every few days of the year: a figure of eight, not closed.
+    pub fn at_hour(&self, hour: usize) -> Vec<(DateTime, Sun)> {
         self.hours.iter().skip(hour).step_by(24 * DAYS_A_POINT).copied().collect()
     }
 }
@@ -232,8 +238,8 @@ fn draw_legend(out: &mut dyn Write, path: &SunPath, name: &str) -> io::Result<()
     Ok(())
 }
 
-/// The parts of a track above the horizon, cut where it crosses.
-fn above_horizon(track: &[Sun]) -> Vec<Vec<DVec3>> {
+/// The parts of a track above the horizon as directions (x east, y true north, z up), cut where it crosses.
+pub fn above_horizon(track: &[Sun]) -> Vec<Vec<DVec3>> {
     let mut runs: Vec<Vec<DVec3>> = Vec::new();
     let directions: Vec<DVec3> = track.iter().map(Sun::towards).collect();
     for pair in directions.windows(2) {

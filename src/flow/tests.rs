@@ -79,7 +79,7 @@ pub fn veins(openings: &[u16], edges: &[(u32, u32, f32)]) -> Skeleton {
         graph.add_edge(a.into(), b.into(), Edge { length_m, section_m2: 1.0, opening_voxels: u16::MAX, neck: None });
     }
     let (_, model) = modelled(&boxed(Vec3::ZERO, Vec3::ONE), Vec::new(), Vec::new());
-    Skeleton { graph, ..model.skeleton }
+    Skeleton { graph, ..(*model.skeleton).clone() }
 }
 
 /// What a heuristic of the tests gives: one W/m2 from above, wherever the light's tree reaches.

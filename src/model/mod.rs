@@ -34,9 +34,9 @@ pub struct Model {
     /// What light falls on.
     pub walls: Walls,
     /// Where matter and void are.
-    pub voxels: Voxels,
+    pub voxels: Arc<Voxels>,
     /// Where the void runs.
-    pub skeleton: Skeleton,
+    pub skeleton: Arc<Skeleton>,
     /// Where each emitter of [`Model::sources`] stands, in their order.
     pub shining: Vec<Shining>,
 }
@@ -140,8 +140,16 @@ impl Model {
         Ok(Self::of(scene, rays, sources, voxels, skeleton))
     }
 
-    /// The model of a scene that these parts of it make.
-    pub fn of(scene: &Scene, rays: Arc<Rays>, sources: Sources, voxels: Voxels, skeleton: Skeleton) -> Self {
+    /// The model of a scene that these parts of it make. Parts of another model may be shared where what changed in the scene
+    /// does not touch them: flux and reflectance leave voxels and skeleton, a light that moves within the void the skeleton.
+    pub fn of(
+        scene: &Scene,
+        rays: Arc<Rays>,
+        sources: Sources,
+        voxels: impl Into<Arc<Voxels>>,
+        skeleton: impl Into<Arc<Skeleton>>,
+    ) -> Self {
+        let (voxels, skeleton) = (voxels.into(), skeleton.into());
         let sampler = Sampler::new(scene, &sources, rays.epsilon_m());
         let walls = Walls::of(scene);
         let mut model = Self { rays, sources, sampler, walls, voxels, skeleton, shining: Vec::new() };
@@ -173,7 +181,7 @@ impl Model {
 
     /// The node that a point, looking along `facing` if it lies on a wall, has along the void; or why it has none.
     pub fn place(&self, point_m: Vec3, facing: Option<Vec3>) -> Result<NodeIndex, Status> {
-        let Voxels { lattice, solid, void, .. } = &self.voxels;
+        let Voxels { lattice, solid, void, .. } = &*self.voxels;
         let place = Place { point_m, normal: facing };
         let ground = Ground { lattice, solid, rays: &self.rays };
         let voxel = seeds::resolved_one(&place, &ground, void).map_err(status)?;

@@ -127,6 +127,22 @@ pub fn srgb_code(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// The tone mapping of a linear colour for a screen, in sRGB's code: luminance Y becomes 1 - exp(-Y / `white`), so that what is as bright
+/// as `white` takes 63%; the colour stays, mixed with grey as far as a screen needs it. Black without light or white.
+pub fn tone_mapped(rgb: [f64; 3], white: f64) -> [u8; 3] {
+    let seen = luminance(rgb);
+    if seen <= 0.0 || white <= 0.0 {
+        return [0; 3];
+    }
+    let grey = 1.0 - (-seen / white).exp();
+    let mapped = rgb.map(|value| value * grey / seen);
+
+    // Towards grey until the strongest channel fits.
+    let strongest = mapped.iter().copied().fold(grey, f64::max);
+    let colour = if strongest > 1.0 { (1.0 - grey) / (strongest - grey) } else { 1.0 };
+    mapped.map(|value| (255.0 * srgb_code(grey + (value - grey) * colour)).round() as u8)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,13 +2,31 @@
 //!
 //! Viridis (default) and cividis read right in grey and with any colour vision (van der Walt, Smith & Firing 2015;
 //! Nuñez, Anderton & Renslow 2018); turbo (Mikhailov 2019) shows more steps and is for who wants them; the diverging
-//! map is ColorBrewer's red-yellow-blue, safe for colour-blind eyes, for ratios about one. Missing values are grey, which
-//! no map contains.
+//! map is ColorBrewer's red-yellow-blue, safe for colour-blind eyes, for ratios about one. What has no value is of a
+//! grey that no map comes near.
 
 use serde::{Deserialize, Serialize};
 
-/// Colour of what has no value, sRGB.
-pub const GREY: [u8; 3] = [128, 128, 128];
+/// Colour of what has no value, sRGB. Lighter than the middle, where cividis is all but grey.
+pub const GREY: [u8; 3] = [164, 164, 164];
+
+/// Names without an order: Okabe and Ito's colours, told apart by any colour vision, black left out.
+const CATEGORIES: [[u8; 3]; 7] = [
+    [0x56, 0xb4, 0xe9],
+    [0xe6, 0x9f, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0xf0, 0xe4, 0x42],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x72, 0xb2],
+];
+
+/// The colour of the name of that number: seven, then the same again in two darker shades.
+pub fn category(number: usize) -> [u8; 3] {
+    let shade = [1.0, 0.72, 0.5][number / CATEGORIES.len() % 3];
+    CATEGORIES[number % CATEGORIES.len()].map(|part| (f32::from(part) * shade) as u8)
+}
+
 /// Share of the values below the top of a default range: a few outliers must not flatten the rest.
 const PERCENTILE: f64 = 0.995;
 /// Decades that a default range of flux spans.
@@ -162,6 +180,17 @@ mod tests {
         for map in [ColourMap::Viridis, ColourMap::Cividis] {
             let lumas: Vec<f32> = (0..=32).map(|step| luma(map.rgb(step as f32 / 32.0))).collect();
             assert!(lumas.windows(2).all(|pair| pair[0] < pair[1]), "{map:?}: {lumas:?}");
+        }
+    }
+
+    #[test]
+    fn no_map_comes_near_the_grey_of_missing_values() {
+        for map in ColourMap::ALL {
+            for step in 0..=256 {
+                let colour = map.rgb(step as f32 / 256.0);
+                let apart = colour.iter().zip(GREY).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+                assert!(apart >= 40, "{map:?} has {colour:?}");
+            }
         }
     }
 

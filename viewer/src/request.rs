@@ -75,14 +75,31 @@ pub struct Request {
     pub how: How,
     /// What is asked of sun and sky; `None` where nothing is.
     pub outdoors: Option<crate::outdoors::OutdoorRequest>,
-    /// Whether all methods are wanted beside the chosen one.
-    pub wants_all_methods: bool,
+    /// What else is wanted: what nobody looks at is not computed.
+    pub wants: Wants,
+}
+
+/// Parts of an answer that are made on demand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wants {
+    /// Voxels, skeleton and an estimate: off for scenes in the open without a lamp, where nothing flows.
+    pub model: bool,
+    /// The estimate on the faces of the mesh.
+    pub faces: bool,
+    /// All methods beside the chosen one.
+    pub all_methods: bool,
+}
+
+impl Default for Wants {
+    fn default() -> Self {
+        Self { model: true, faces: false, all_methods: true }
+    }
 }
 
 impl Request {
     /// A fresh request for a scene.
     pub fn of(source: Source) -> Self {
-        Self { source, wants_all_methods: true, ..Self::default() }
+        Self { source, ..Self::default() }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Which results something was made of, so that it is made again when they change and not before.
 
+use crate::outdoors::sky::Sky;
+use crate::outdoors::{FaceExposure, PixelExposure, SensorExposure};
 use crate::results::{Answer, Estimate, Faces, Results};
 use lightvein::model::Model;
 use lightvein::scene::Scene;
@@ -13,10 +15,14 @@ pub struct Stamp {
     estimate: Weak<Estimate>,
     faces: Weak<Faces>,
     answers: Weak<Vec<Answer>>,
+    sky: Weak<Sky>,
+    exposed_faces: Weak<FaceExposure>,
+    exposed_sensors: Weak<SensorExposure>,
+    exposed_pixels: Weak<PixelExposure>,
 }
 
 impl Stamp {
-    /// The stamp of these results; sun and sky are not in it.
+    /// The stamp of these results.
     pub fn of(results: &Results) -> Self {
         Self {
             scene: weak(results.scene.as_ref()),
@@ -24,6 +30,10 @@ impl Stamp {
             estimate: weak(results.estimate.as_ref()),
             faces: weak(results.faces.as_ref()),
             answers: Arc::downgrade(&results.answers),
+            sky: weak(results.outdoors.sky.as_ref()),
+            exposed_faces: weak(results.outdoors.faces.as_ref()),
+            exposed_sensors: weak(results.outdoors.sensors.as_ref()),
+            exposed_pixels: weak(results.outdoors.pixels.as_ref()),
         }
     }
 
@@ -34,6 +44,10 @@ impl Stamp {
             && self.estimate.ptr_eq(&other.estimate)
             && self.faces.ptr_eq(&other.faces)
             && self.answers.ptr_eq(&other.answers)
+            && self.sky.ptr_eq(&other.sky)
+            && self.exposed_faces.ptr_eq(&other.exposed_faces)
+            && self.exposed_sensors.ptr_eq(&other.exposed_sensors)
+            && self.exposed_pixels.ptr_eq(&other.exposed_pixels)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::log::Log;
 use crate::measure::Measure;
 use crate::request::{History, Request};
 use crate::results::Results;
+use glam::Vec3;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -123,6 +124,8 @@ pub struct State {
     pub hovered: Option<Picked>,
     /// The ways from what is picked to each light.
     pub ways: Vec<crate::panels::inspector::WayToLight>,
+    /// Where the arrows stand that what is picked is dragged by, and how long they are, metres; `None` without.
+    pub gizmo: Option<(Vec3, f32)>,
     /// What was told.
     pub log: Log,
     /// What the panels asked for since the last frame.
@@ -146,10 +149,11 @@ impl State {
             running: Running::Idle,
             layers,
             scales: BTreeMap::new(),
-            camera: Camera::fitted((glam::Vec3::ZERO, glam::Vec3::ONE), 1.0),
+            camera: Camera::fitted((Vec3::ZERO, Vec3::ONE), 1.0),
             picked: None,
             hovered: None,
             ways: Vec::new(),
+            gizmo: None,
             log: Log::default(),
             actions: Vec::new(),
             kept,

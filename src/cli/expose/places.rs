@@ -5,6 +5,7 @@ use crate::cli::tell;
 use crate::cli::write::Folder;
 use crate::daylight::camera::{Buffers, Camera};
 use crate::daylight::cast::{Asked, Casting};
+use crate::daylight::choose::{PICTURE_TOLERANCE, SENSOR_TOLERANCE};
 use crate::daylight::dynamic::{Disturbance, seen_again};
 use crate::daylight::surface::{Corners, Patch, corners, default_patch_m, patches, patches_changed};
 use crate::daylight::way::Way;
@@ -18,10 +19,6 @@ use crate::scene::Scene;
 use crate::scene::parts::Change;
 use anyhow::{Context, Result, bail};
 use std::io::Write;
-
-/// Tolerances of what is read, and of what is looked at.
-const SENSOR_TOLERANCE: f64 = 1.02;
-const PICTURE_TOLERANCE: f64 = 1.1;
 
 /// How the points lie.
 #[derive(Debug, Clone)]
@@ -86,15 +83,14 @@ pub fn at(args: &ExposeArgs, scene: &Scene) -> Result<At> {
 
 /// Rays a point: as many as were asked for, else the truth at sensors and fewer where there are many points.
 pub fn casting(args: &ExposeArgs, at: At, seed: u64) -> Casting {
-    let truth = Casting::default();
-    let (sun_rays, sky_rays) = match at {
-        At::Sensors => (truth.sun_rays, truth.sky_rays),
-        At::Faces | At::Vertices => (Some(64), 128),
-        At::Camera => (Some(16), 32),
+    let usual = match at {
+        At::Sensors => Casting { seed, ..Casting::default() },
+        At::Faces | At::Vertices => Casting::of_faces(seed),
+        At::Camera => Casting::of_pixels(seed),
     };
     Casting {
-        sun_rays: args.sun_rays.map_or(sun_rays, |given| given.0),
-        sky_rays: args.sky_rays.unwrap_or(sky_rays),
+        sun_rays: args.sun_rays.map_or(usual.sun_rays, |given| given.0),
+        sky_rays: args.sky_rays.unwrap_or(usual.sky_rays),
         seed,
     }
 }

@@ -159,6 +159,29 @@ fn estimate_at(
     }
 }
 
+/// One network asked twice: gathered at the probes where the answer is to be right, and read at its zones at those that are
+/// many. As much as [`with`] gives for each, for the price of one network.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn gathered_and_read(
+    quality: &Quality,
+    model: &Model,
+    [gathered, read]: [&[Probe]; 2],
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<[Field; 2], Cancelled> {
+    let (network, lines) = Network::new(model, quality, settings, progress, cancel)?;
+    let tracks = network.tracks(&lines, settings);
+    let many = read::read(&network, &tracks, read, settings, progress, cancel)?;
+    let few = match &quality.gather {
+        Some(gather) => gather::gather(&network, gather, gathered, settings, progress, cancel)?,
+        None => read::read(&network, &tracks, gathered, settings, progress, cancel)?,
+    };
+    Ok([few, many])
+}
+
 /// What a network stands on.
 pub struct Grounds<'a> {
     /// What was modelled of the scene.

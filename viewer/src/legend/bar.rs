@@ -124,7 +124,7 @@ impl Whole<'_> {
         };
         let x = self.x(value);
         let rect = Rect::from_x_y_ranges(x - 5.0..=x + 5.0, self.bar.top() - 4.0..=self.bar.bottom() + 4.0);
-        let response = ui.interact(rect, ui.id().with(("limit", measure, limit)), Sense::click_and_drag());
+        let response = ui.interact(rect, ui.scope_id().with(("limit", measure, limit)), Sense::click_and_drag());
         let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
         let name = match limit {
             Limit::Low => format!("Lowest {}", measure.title()),

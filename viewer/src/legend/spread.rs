@@ -70,32 +70,22 @@ impl Spread {
 #[derive(Clone)]
 struct Kept {
     stamp: Stamp,
-    outdoors: u64,
     spread: Option<Arc<Spread>>,
 }
 
 /// The spread of a measure, counted again when its values change.
 pub fn kept(ui: &Ui, state: &State, measure: Measure) -> Option<Arc<Spread>> {
-    let key = ui.id().with(("spread", measure));
+    let key = ui.scope_id().with(("spread", measure));
     let stamp = Stamp::of(&state.results);
-    let outdoors = sample(&state.results.outdoors.values(measure));
     if let Some(kept) = ui.data(|data| data.get_temp::<Kept>(key))
         && kept.stamp.is(&stamp)
-        && kept.outdoors == outdoors
     {
         return kept.spread;
     }
     let values = measure.values(&state.results);
     let spread = Spread::of(&values, &measure.fitted(&values, state.map(measure))).map(Arc::new);
-    ui.data_mut(|data| data.insert_temp(key, Kept { stamp, outdoors, spread: spread.clone() }));
+    ui.data_mut(|data| data.insert_temp(key, Kept { stamp, spread: spread.clone() }));
     spread
-}
-
-/// A number that changes when values do: of how many there are and of some hundred of them.
-fn sample(values: &[f32]) -> u64 {
-    let stride = (values.len() / 256).max(1);
-    let some = values.iter().step_by(stride);
-    some.fold(values.len() as u64, |sum, value| sum.rotate_left(7) ^ u64::from(value.to_bits()).wrapping_mul(0x9E37_79B9))
 }
 
 /// Ticks between two values: powers of ten, with twos and fives where there are few, or round steps.

@@ -4,7 +4,7 @@ use super::{choice, row, rows, scrolled, section};
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Section, Slice, VoxelShow};
 use crate::state::State;
 use egui::{Slider, Ui};
-use lightvein::daylight::quantity::Quantity;
+use lightvein::daylight::Quantity;
 
 /// Shows a switch for each layer, with its options while it is on.
 pub fn show(ui: &mut Ui, state: &mut State) {

@@ -51,7 +51,7 @@ fn asked(state: &State) -> Method {
 
 fn method(ui: &mut Ui, state: &mut State) {
     let mut method = asked(state);
-    let id = ui.id().with("method").value();
+    let id = ui.scope_id().with("method").value();
     if choice(ui, &mut method, &Method::ALL, Method::name) {
         state.change(id ^ method as u64, |request| {
             request.how.method = Some(method);
@@ -68,7 +68,7 @@ fn quality(ui: &mut Ui, state: &mut State) {
     }
     let mut quality = state.request.how.quality;
     let name = |quality: Option<usize>| quality.and_then(|rung| ladder.get(rung)).map_or("default", String::as_str);
-    let id = ui.id().with("quality");
+    let id = ui.scope_id().with("quality");
     egui::ComboBox::from_id_salt(id).selected_text(name(quality)).show_ui(ui, |ui| {
         for rung in std::iter::once(None).chain((0..ladder.len()).map(Some)) {
             ui.selectable_value(&mut quality, rung, name(rung));
@@ -87,7 +87,8 @@ fn voxel(ui: &mut Ui, state: &mut State) {
         ui.weak("will be chosen");
         return;
     };
-    let drag = DragValue::new(&mut voxel_m).range(VOXEL_M).speed(f64::from(voxel_m) * 0.005).suffix(" m");
+    let speed = f64::from(voxel_m) * 0.005;
+    let drag = DragValue::new(&mut voxel_m).range(VOXEL_M).speed(speed).suffix(" m");
     // Halfway through typing `0.05` stands a `0`.
     let response = ui.add(drag.max_decimals(6).update_while_editing(false));
     changed(state, &response, |how| how.voxel_m = Some(voxel_m));

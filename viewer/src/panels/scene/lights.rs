@@ -7,6 +7,7 @@ use egui::{Button, DragValue, Response, Ui};
 use glam::{DVec3, Vec3};
 use lightvein::scene::input::FARTHEST_M;
 use lightvein::scene::{Light, Scene};
+use std::borrow::Cow;
 
 /// Flux of a light that is added, W: a bright household lamp.
 const ADDED_FLUX_W: f64 = 100.0;
@@ -15,18 +16,18 @@ const ADDED_FLUX_W: f64 = 100.0;
 const MOST_FLUX_W: f64 = 1e9;
 
 /// The lights as they are asked for: the user's, or the file's. A bare mesh has the one that the library gave it.
-pub fn asked(state: &State) -> Vec<Light> {
+pub fn asked(state: &State) -> Cow<'_, [Light]> {
     if let Some(lights) = &state.request.edits.lights {
-        return lights.clone();
+        return Cow::Borrowed(lights);
     }
     let loaded = state.results.loaded.as_ref().filter(|scene| !scene.bare);
     let scene = loaded.or(state.results.scene.as_ref());
-    scene.map(|scene| scene.lights.clone()).unwrap_or_default()
+    Cow::Borrowed(scene.map_or(&[], |scene| &scene.lights))
 }
 
 /// Shows the lights, and changes them.
 pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
-    let lights = asked(state);
+    let lights = asked(state).into_owned();
     let is_listed = |number: &usize| *number < LISTED || state.picked == Some(Picked::Light(*number));
     let listed: Vec<usize> = (0..lights.len()).filter(is_listed).collect();
     for number in listed {
@@ -46,7 +47,7 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
         let is_edited = state.request.edits.lights.is_some();
         let reset = ui.add_enabled(is_edited, Button::new("Reset lights"));
         if reset.on_hover_text("As the file has them").clicked() {
-            state.change(ui.id().with("reset").value(), |request| request.edits.lights = None);
+            state.change(ui.scope_id().with("reset").value(), |request| request.edits.lights = None);
         }
     });
 }
@@ -76,7 +77,7 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
     rows(ui, "light", |ui| {
         row(ui, &format!("Flux of light {number}"), |ui| {
             let mut flux_w = light.flux_w();
-            let drag = DragValue::new(&mut flux_w).range(0.0..=MOST_FLUX_W.max(flux_w)).suffix(" W");
+            let drag = DragValue::new(&mut flux_w).range(0.0..=MOST_FLUX_W.max(light.flux_w())).suffix(" W");
             let response = ui.add(drag.speed((light.flux_w() * 0.01).max(0.1)).max_decimals(3));
             changed(state, &response, lights, number, with_flux(light, flux_w));
         });

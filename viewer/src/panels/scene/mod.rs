@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             let is_changed = !state.request.edits.is_empty();
             let reset = ui.add_enabled(is_changed, egui::Button::new("Reset scene"));
             if reset.on_hover_text("Lights, reflectances and parts as the file has them").clicked() {
-                state.change(ui.id().with("reset").value(), |request| request.edits = Default::default());
+                state.change(ui.scope_id().with("reset").value(), |request| request.edits = Default::default());
             }
         });
         section(ui, "Estimate", true, |ui| how::show(ui, state));

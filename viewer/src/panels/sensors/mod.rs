@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let Some(table) = Table::of(&state.results).filter(|table| table.len() > 0) else {
         return super::nothing(ui, state, "the scene has no sensors");
     };
-    let key = ui.id().with("sensors");
+    let key = ui.scope_id().with("sensors");
     let kept: Option<Kept> = ui.data(|data| data.get_temp(key));
     let mut sorted = kept.as_ref().map_or((Column::Number, Direction::Up), |kept| kept.sorted);
     let stamp = Stamp::of(&state.results);
