@@ -67,7 +67,7 @@ pub fn apply(ctx: &Context, kept: &Kept) {
         ctx.set_zoom_factor(zoom);
     }
 
-    let made = egui::Id::new("lightvein theme");
+    let made = egui::Id::unique("lightvein theme");
     if ctx.data(|data| data.get_temp::<bool>(made)).is_none() {
         ctx.data_mut(|data| data.insert_temp(made, true));
         // Keys of the text scale stand in the table of controls.

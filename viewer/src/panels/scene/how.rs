@@ -28,11 +28,11 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     });
     ui.collapsing("What the skeleton keeps", |ui| filter(ui, state));
 
-    let mut wants_all = state.request.wants_all_methods;
+    let mut wants_all = state.request.wants.all_methods;
     let response = ui.checkbox(&mut wants_all, "Compare all methods");
     let gesture = gesture(&response);
     if response.on_hover_text("Estimate by every method, for the inspector, the table and the chart").changed() {
-        state.change(gesture, |request| request.wants_all_methods = wants_all);
+        state.change(gesture, |request| request.wants.all_methods = wants_all);
     }
 }
 
