@@ -48,12 +48,11 @@ fn limits_do_not_cross() {
 #[test]
 fn a_map_is_chosen_and_kept() {
     let mut harness = shown(over_all, state());
-    let map = harness.get_all_by_label("Map").next().expect("a menu");
-    map.click();
+    let first = harness.state().layers.measures()[0];
+    harness.get_by_label(&format!("Colour map of {}", first.title())).click();
     harness.run();
     harness.get_by_label("Cividis").click();
     harness.run();
-    let first = harness.state().layers.measures()[0];
     assert_eq!(harness.state_mut().scale(first).map, ColourMap::Cividis);
     harness.state_mut().refit(first);
     assert_eq!(harness.state_mut().scale(first).map, ColourMap::Cividis);

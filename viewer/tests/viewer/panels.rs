@@ -11,6 +11,7 @@ use lightvein::scene::{Light, Method};
 use lightvein_viewer::layers::{MeshStyle, NodeColour};
 use lightvein_viewer::log::Level;
 use lightvein_viewer::panels::{self, scene::asked_lights};
+use lightvein_viewer::request::Edits;
 use lightvein_viewer::state::{Picked, State};
 use lightvein_viewer::theme;
 
@@ -93,7 +94,8 @@ fn a_dragged_flux_is_asked_for_at_once_and_is_one_step_to_undo() {
         state.request = state.history.undo(&state.request).expect("a step");
         assert_eq!(first_flux_w(state), want_w);
     }
-    assert!(!harness.state().history.can()[0] && !harness.state().is_stale());
+    assert_eq!(Some(&harness.state().request), harness.state().answered.as_ref());
+    assert!(!harness.state().history.can()[0]);
 }
 
 #[test]
@@ -126,7 +128,7 @@ fn lights_are_added_and_removed() {
     harness.get_by_label("Reset lights").click();
     harness.run();
     assert_eq!(first_flux_w(harness.state()), 60.0);
-    assert!(harness.state().request.edits.is_empty());
+    assert_eq!(harness.state().request.edits, Edits::default());
 }
 
 #[test]
@@ -153,7 +155,7 @@ fn filter_and_voxel_size_go_back_to_what_the_library_has() {
     harness.get_by_label("Reset filter").click();
     harness.run();
     assert_eq!(harness.state().request.how.filter, lightvein::skeleton::Filter::default());
-    harness.get_by_label("Reset").click();
+    harness.get_by_label("Reset voxel size").click();
     harness.run();
     assert_eq!(harness.state().request.how.voxel_m, None);
 }
