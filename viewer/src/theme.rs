@@ -91,7 +91,6 @@ fn sizes(style: &mut Style) {
     }
     style.visuals.indent_has_left_vline = false;
     style.visuals.slider_trailing_fill = true;
-    style.visuals.striped = true;
     style.visuals.window_corner_radius = CornerRadius::same(8);
     for widget in [
         &mut style.visuals.widgets.inactive,

@@ -30,7 +30,9 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     key(ui, &points);
     let off = off_chart(&state.results.answers);
     if !off.is_empty() {
-        ui.label(RichText::new(format!("Not on the chart, for sensors without any light: {}", off.join(", "))).weak());
+        ui.label(
+            RichText::new(format!("Not on the chart, because they call lit sensors dark: {}", off.join(", "))).weak(),
+        );
     }
 
     let front = front(&points);
@@ -38,7 +40,11 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let strong = ui.visuals().strong_text_color();
     let mut plot =
         Plot::new("chart").x_axis_label("time for all sensors").y_axis_label("error, factor (root mean square)");
-    plot = plot.x_grid_spacer(decades).y_grid_spacer(decades).show_grid([true, true]);
+    plot = plot
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .show_grid([true, true])
+        .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.4));
     plot = plot.x_axis_formatter(|mark, _| seconds_text(10_f64.powf(mark.value)));
     plot = plot.y_axis_formatter(|mark, _| factor_text(10_f64.powf(mark.value)));
     plot = plot.set_margin_fraction(egui::vec2(0.15, 0.15)).allow_scroll(false).include_y(0.0);
@@ -177,7 +183,8 @@ fn decades(input: GridInput) -> Vec<GridMark> {
         [at(1.0, 1.0), at(1.5, NEAR), at(2.0, 0.3), at(3.0, NEAR), at(5.0, 0.3)]
     };
     let step = input.base_step_size;
-    powers.flat_map(of_power).filter(|mark| mark.step_size >= step).collect()
+    let is_shown = |mark: &GridMark| mark.step_size >= step && (low..=high).contains(&mark.value);
+    powers.flat_map(of_power).filter(is_shown).collect()
 }
 
 /// An error as the axis has it: `1.2x`.

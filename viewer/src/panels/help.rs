@@ -52,7 +52,7 @@ fn heading(ui: &mut Ui, text: &str) {
 
 /// Rows of a key or a touch and what it does.
 fn rows(ui: &mut Ui, name: &str, rows: impl Iterator<Item = (String, &'static str)>) {
-    Grid::new(name).num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+    Grid::new(name).num_columns(2).spacing([12.0, 2.0]).striped(true).show(ui, |ui| {
         for (keys, does) in rows {
             ui.label(RichText::new(keys).monospace());
             ui.label(does);

@@ -114,6 +114,11 @@ fn a_position_is_typed_in_the_users_coordinates() {
     let at_m = scene.to_user_m(panels::scene::middle_m(&lights[0]));
     assert!((at_m - glam::dvec3(1.63, 2.47, 1.25)).length() < 1e-5, "{at_m}");
     assert_eq!(state.history.can(), [true, false]);
+
+    // However many signs were typed, it is one step.
+    let state = harness.state_mut();
+    state.request = state.history.undo(&state.request).expect("a step");
+    assert!(!state.is_stale() && !state.history.can()[0]);
 }
 
 #[test]

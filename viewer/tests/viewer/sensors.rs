@@ -5,8 +5,10 @@ use crate::scene::state;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use lightvein::scene::Sensor;
 use lightvein_viewer::panels::sensors;
 use lightvein_viewer::state::{Picked, State};
+use std::sync::Arc;
 
 /// The names of the sensors from the top of the table down.
 fn rows(harness: &Harness<'static, State>) -> Vec<String> {
@@ -45,6 +47,22 @@ fn a_click_on_a_heading_sorts_and_one_on_a_row_picks() {
 /// The heading of the estimate, with a sign behind it once it is sorted.
 fn heading(harness: &Harness<'static, State>) -> &'static str {
     ["W/m²", "W/m² ⏶", "W/m² ⏷"].into_iter().find(|text| harness.query_by_label(text).is_some()).expect("a heading")
+}
+
+#[test]
+fn of_a_hundred_thousand_sensors_those_are_drawn_that_are_seen() {
+    let mut state = state();
+    let mut scene = (**state.results.scene.as_ref().expect("a scene")).clone();
+    let first = scene.sensors[0].clone();
+    scene.sensors = (0..100_000).map(|number| Sensor { id: format!("s{number}"), ..first.clone() }).collect();
+    state.results.scene = Some(Arc::new(scene));
+    let mut harness = shown(sensors::show, state);
+    let drawn = |harness: &Harness<'static, State>| harness.query_all_by_label_contains("s").count();
+    assert!((10..1000).contains(&drawn(&harness)), "{}", drawn(&harness));
+    harness.get_by_label("No. ⏶").click();
+    harness.run();
+    harness.get_by_label("s99999");
+    assert!((10..1000).contains(&drawn(&harness)), "{}", drawn(&harness));
 }
 
 #[test]

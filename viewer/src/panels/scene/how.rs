@@ -115,19 +115,21 @@ fn filter(ui: &mut Ui, state: &mut State) {
             changed(state, &response, |how| how.filter = filter);
         });
     });
-    let switches: [(&str, &str, fn(&mut Filter) -> &mut bool); 3] = [
-        ("Keep middles of rooms", "Without, a curve ends at a dead-end room's mouth", |filter| {
-            &mut filter.keeps_middles
-        }),
-        ("Cut branches", "Those inside the ball of what they leave: noise on walls", |filter| {
-            &mut filter.cuts_branches
-        }),
-        ("Grow dead ends", "On to their walls, which thinning stops short of", |filter| &mut filter.grows_ends),
-    ];
-    for (name, says, switch) in switches {
-        let response = ui.checkbox(switch(&mut filter), name).on_hover_text(says);
+    let mut switch = |on: fn(&mut Filter) -> &mut bool, name: &str, says: &str| {
+        let response = ui.checkbox(on(&mut filter), name).on_hover_text(says);
         changed(state, &response, |how| how.filter = filter);
-    }
+    };
+    switch(
+        |filter| &mut filter.keeps_middles,
+        "Keep middles of rooms",
+        "Without, a curve ends at a dead-end room's mouth",
+    );
+    switch(
+        |filter| &mut filter.cuts_branches,
+        "Cut branches",
+        "Those inside the ball of what they leave: noise on walls",
+    );
+    switch(|filter| &mut filter.grows_ends, "Grow dead ends", "On to their walls, which thinning stops short of");
     let reset = ui.add_enabled(filter != Filter::default(), egui::Button::new("Reset filter"));
     if reset.clicked() {
         state.change(gesture(&reset), |request| request.how.filter = Filter::default());

@@ -24,7 +24,7 @@ struct Kept {
 
 /// Shows the table; a click on a heading sorts by it, one on a row picks its sensor.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    let Some(table) = Table::of(&state.results).filter(|table| table.len() > 0) else {
+    let Some(table) = Table::of(&state.results).filter(|table| !table.is_empty()) else {
         return super::nothing(ui, state, "the scene has no sensors");
     };
     let key = ui.scope_id().with("sensors");
