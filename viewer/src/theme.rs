@@ -90,6 +90,7 @@ fn sizes(style: &mut Style) {
         heading.size = 16.0;
     }
     style.visuals.indent_has_left_vline = false;
+    style.visuals.weak_text_alpha = 0.75;
     style.visuals.slider_trailing_fill = true;
     style.visuals.window_corner_radius = CornerRadius::same(8);
     for widget in [

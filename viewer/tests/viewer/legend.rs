@@ -19,10 +19,14 @@ fn over_all(ui: &mut egui::Ui, state: &mut State) {
 fn limits_are_dragged_and_refitted() {
     let mut harness = shown(over_all, state());
     let fitted = harness.state_mut().scale(Measure::Irradiance);
+    assert!(harness.query_by_label_contains(", some below").is_none());
     let place = harness.get_by_role_and_label(Role::Slider, "Lowest Irradiance").rect().center();
-    drag(&mut harness, place, egui::vec2(40.0, 0.0));
+    drag(&mut harness, place, egui::vec2(150.0, 0.0));
     let dragged = harness.state_mut().scale(Measure::Irradiance);
     assert!(dragged.low > 2.0 * fitted.low && dragged.high == fitted.high, "{fitted:?} {dragged:?}");
+
+    // What lies below it is told by a sign, and to screen readers in words.
+    assert!(harness.query_by_label_contains(", some below").is_some());
 
     // Other values do not move it.
     let mut estimate = (**harness.state().results.estimate.as_ref().expect("an estimate")).clone();
