@@ -1,1 +1,7 @@
 //! The viewer as its user meets it.
+
+mod keys;
+mod legend;
+mod panels;
+mod scene;
+mod sensors;

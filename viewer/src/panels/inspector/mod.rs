@@ -3,6 +3,8 @@
 mod facts;
 mod methods;
 
+pub use methods::seconds_text;
+
 use super::{scrolled, section};
 use crate::state::{Picked, State};
 use egui::Ui;

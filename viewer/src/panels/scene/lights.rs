@@ -1,12 +1,13 @@
 //! The lights: where each is, in the user's coordinates, and how strong.
 
 use super::LISTED;
-use crate::panels::{gesture, row, rows};
+use crate::panels::{gesture, named, row, rows};
 use crate::state::{Picked, State};
 use egui::{Button, DragValue, Response, Ui};
 use glam::{DVec3, Vec3};
 use lightvein::scene::input::FARTHEST_M;
 use lightvein::scene::{Light, Scene};
+use std::borrow::Cow;
 
 /// Flux of a light that is added, W: a bright household lamp.
 const ADDED_FLUX_W: f64 = 100.0;
@@ -15,18 +16,18 @@ const ADDED_FLUX_W: f64 = 100.0;
 const MOST_FLUX_W: f64 = 1e9;
 
 /// The lights as they are asked for: the user's, or the file's. A bare mesh has the one that the library gave it.
-pub fn asked(state: &State) -> Vec<Light> {
+pub fn asked(state: &State) -> Cow<'_, [Light]> {
     if let Some(lights) = &state.request.edits.lights {
-        return lights.clone();
+        return Cow::Borrowed(lights);
     }
     let loaded = state.results.loaded.as_ref().filter(|scene| !scene.bare);
     let scene = loaded.or(state.results.scene.as_ref());
-    scene.map(|scene| scene.lights.clone()).unwrap_or_default()
+    Cow::Borrowed(scene.map_or(&[], |scene| &scene.lights))
 }
 
 /// Shows the lights, and changes them.
 pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
-    let lights = asked(state);
+    let lights = asked(state).into_owned();
     let is_listed = |number: &usize| *number < LISTED || state.picked == Some(Picked::Light(*number));
     let listed: Vec<usize> = (0..lights.len()).filter(is_listed).collect();
     for number in listed {
@@ -46,7 +47,7 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
         let is_edited = state.request.edits.lights.is_some();
         let reset = ui.add_enabled(is_edited, Button::new("Reset lights"));
         if reset.on_hover_text("As the file has them").clicked() {
-            state.change(ui.id().with("reset").value(), |request| request.edits.lights = None);
+            state.change(ui.scope_id().with("reset").value(), |request| request.edits.lights = None);
         }
     });
 }
@@ -64,7 +65,7 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
             state.picked = (!is_picked).then_some(Picked::Light(number));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let remove = ui.name_inputs(format!("Remove light {number}"), |ui| ui.small_button("Remove"));
+            let remove = named(ui.small_button("Remove"), &format!("Remove light {number}"));
             if remove.clicked() {
                 let mut left = lights.to_vec();
                 left.remove(number);
@@ -74,10 +75,11 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
         });
     });
     rows(ui, "light", |ui| {
-        row(ui, &format!("Flux of light {number}"), |ui| {
+        row(ui, "Flux", |ui| {
             let mut flux_w = light.flux_w();
-            let drag = DragValue::new(&mut flux_w).range(0.0..=MOST_FLUX_W.max(flux_w)).suffix(" W");
+            let drag = DragValue::new(&mut flux_w).range(0.0..=MOST_FLUX_W.max(light.flux_w())).suffix(" W");
             let response = ui.add(drag.speed((light.flux_w() * 0.01).max(0.1)).max_decimals(3));
+            let response = named(response, &format!("Flux of light {number}"));
             changed(state, &response, lights, number, with_flux(light, flux_w));
         });
         row(ui, "Position", |ui| {
@@ -86,8 +88,8 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
             for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
                 let mut along_m = at_m[axis];
                 let drag = DragValue::new(&mut along_m).range(-FARTHEST_M..=FARTHEST_M).speed(0.02).max_decimals(3);
-                let label = format!("{name} of light {number}");
-                let response = ui.name_inputs(label, |ui| ui.add(drag.prefix(format!("{name} ")).suffix(" m")));
+                let response = ui.add(drag.prefix(format!("{name} ")).suffix(" m"));
+                let response = named(response, &format!("{name} of light {number}"));
                 let mut moved = DVec3::from_array(at_m);
                 moved[axis] = along_m;
                 let to_m = (moved - scene.origin_m).as_vec3();

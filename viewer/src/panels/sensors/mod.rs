@@ -8,6 +8,7 @@ mod table;
 pub use table::{Column, Direction, Table};
 
 use super::number;
+use crate::stamp::Stamp;
 use crate::state::{Action, Picked, State};
 use egui::{Align, Layout, RichText, Sense, Ui};
 use egui_extras::TableBuilder;
@@ -16,20 +17,21 @@ use std::sync::Arc;
 /// What is kept of the table from frame to frame.
 #[derive(Clone)]
 struct Kept {
-    table: Table,
+    stamp: Stamp,
     sorted: (Column, Direction),
     order: Arc<Vec<u32>>,
 }
 
 /// Shows the table; a click on a heading sorts by it, one on a row picks its sensor.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    let Some(table) = Table::of(&state.results).filter(|table| table.len() > 0) else {
+    let Some(table) = Table::of(&state.results).filter(|table| !table.is_empty()) else {
         return super::nothing(ui, state, "the scene has no sensors");
     };
-    let key = ui.id().with("sensors");
+    let key = ui.scope_id().with("sensors");
     let kept: Option<Kept> = ui.data(|data| data.get_temp(key));
     let mut sorted = kept.as_ref().map_or((Column::Number, Direction::Up), |kept| kept.sorted);
-    let still = kept.filter(|kept| kept.table.is_same(&table));
+    let stamp = Stamp::of(&state.results);
+    let still = kept.filter(|kept| kept.stamp.is(&stamp));
 
     tools(ui, state, &table);
     let columns = table.columns();
@@ -41,7 +43,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     grid(ui, state, &table, &columns, &order, &mut sorted);
 
     let order = if sorted == before { order } else { Arc::new(table.order(sorted.0, sorted.1)) };
-    ui.data_mut(|data| data.insert_temp(key, Kept { table, sorted, order }));
+    ui.data_mut(|data| data.insert_temp(key, Kept { stamp, sorted, order }));
 }
 
 fn tools(ui: &mut Ui, state: &mut State, table: &Table) {
@@ -71,6 +73,7 @@ fn grid(
     let mut picked = None;
     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         let widths = columns.iter().map(|column| match column {
+            Column::Number => egui_extras::Column::initial(48.0).at_least(36.0).clip(true),
             Column::Id => egui_extras::Column::initial(110.0).at_least(50.0).clip(true),
             _ => egui_extras::Column::initial(92.0).at_least(50.0).clip(true),
         });
@@ -95,7 +98,7 @@ fn grid(
                 row.set_selected(state.picked == Some(Picked::Sensor(sensor)));
                 for column in columns {
                     row.col(|ui| {
-                        let text = table.cell(*column, sensor).shown();
+                        let text = table.cell(*column, sensor).shown(*column);
                         ui.add(egui::Label::new(text).selectable(false).truncate());
                     });
                 }
@@ -134,9 +137,11 @@ pub fn csv(state: &State) -> String {
 
 impl table::Cell {
     /// As it stands on screen.
-    fn shown(&self) -> String {
+    fn shown(&self, column: Column) -> String {
         match self {
+            Self::Text(text) if column == Column::Status => text.replace('_', " "),
             Self::Text(text) => text.clone(),
+            Self::Number(value) if column == Column::Number => value.to_string(),
             Self::Number(value) => number(*value),
             Self::Missing => "-".to_owned(),
         }

@@ -72,16 +72,6 @@ impl Table {
         self.scene.sensors.is_empty()
     }
 
-    /// Whether it is of the very same results.
-    pub fn is_same(&self, other: &Self) -> bool {
-        let estimate = match (&self.estimate, &other.estimate) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        estimate && Arc::ptr_eq(&self.scene, &other.scene) && Arc::ptr_eq(&self.answers, &other.answers)
-    }
-
     /// The columns on screen.
     pub fn columns(&self) -> Vec<Column> {
         let mut columns = vec![Column::Number, Column::Id, Column::Value];
