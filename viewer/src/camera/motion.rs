@@ -59,7 +59,8 @@ impl Camera {
         ((one_m - other_m) / 2.0, (one_m + other_m) / (2.0 * slope))
     }
 
-    /// Turns to a direction that has a name; target and distance stay.
+    /// Turns to a direction that has a name; target and distance stay. What was fitted is to be fitted anew: in perspective
+    /// the target of a fitted box stands off the box's middle.
     pub fn look_from(&mut self, standard: Standard) {
         (self.azimuth_rad, self.elevation_rad) = standard.angles_rad();
     }

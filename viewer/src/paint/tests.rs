@@ -32,6 +32,7 @@ fn offscreen() -> Option<MutexGuard<'static, Offscreen>> {
 fn camera() -> Camera {
     let mut camera = Camera::fitted((Vec3::NEG_ONE, Vec3::ONE), 4.0 / 3.0);
     camera.look_from(Standard::Front);
+    camera.target_m = Vec3::ZERO;
     camera.distance_m = 10.0;
     camera
 }
