@@ -11,6 +11,7 @@ use crate::log::Log;
 use crate::measure::Measure;
 use crate::request::{History, Request};
 use crate::results::Results;
+use glam::Vec3;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -121,6 +122,8 @@ pub struct State {
     pub picked: Option<Picked>,
     /// What the pointer is over.
     pub hovered: Option<Picked>,
+    /// Where the arrows stand that what is picked is dragged by, and how long they are, metres; `None` without.
+    pub gizmo: Option<(Vec3, f32)>,
     /// What was told.
     pub log: Log,
     /// What the panels asked for since the last frame.
@@ -144,9 +147,10 @@ impl State {
             running: Running::Idle,
             layers,
             scales: BTreeMap::new(),
-            camera: Camera::fitted((glam::Vec3::ZERO, glam::Vec3::ONE), 1.0),
+            camera: Camera::fitted((Vec3::ZERO, Vec3::ONE), 1.0),
             picked: None,
             hovered: None,
+            gizmo: None,
             log: Log::default(),
             actions: Vec::new(),
             kept,
