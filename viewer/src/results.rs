@@ -79,6 +79,13 @@ pub struct Answer {
     pub seconds: f64,
 }
 
+impl Answer {
+    /// Method and quality: `network coarse`.
+    pub fn label(&self) -> String {
+        format!("{} {}", self.method, self.quality).trim_end().to_owned()
+    }
+}
+
 /// A stage of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
