@@ -137,7 +137,8 @@ impl Whole<'_> {
         ui.painter().rect_filled(line.expand(1.0), 1.0, ui.visuals().extreme_bg_color);
         ui.painter().rect_filled(line, 1.0, visuals.fg_stroke.color);
         let is_held = response.dragged() || response.has_focus();
-        let response = response.on_hover_text(format!("{name}: {} {}", crate::panels::number(f64::from(value)), measure.unit()));
+        let response =
+            response.on_hover_text(format!("{name}: {} {}", crate::panels::number(f64::from(value)), measure.unit()));
 
         let mut share = self.share(value);
         let before = share;

@@ -104,7 +104,8 @@ pub fn ticks(low: f32, high: f32, logarithmic: bool) -> Vec<f32> {
     }
     let rough = f64::from(high - low) / 4.0;
     let power = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|times| times * power).into_iter().find(|step| *step >= rough).unwrap_or(rough);
+    let step =
+        [1.0, 2.0, 5.0, 10.0].map(|times| times * power).into_iter().find(|step| *step >= rough).unwrap_or(rough);
     let first = (f64::from(low) / step).ceil() as i64;
     (first..first + 12).map(|number| (number as f64 * step) as f32).filter(fits).collect()
 }

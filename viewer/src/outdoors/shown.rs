@@ -266,3 +266,24 @@ pub fn map_picture(state: &mut State, ctx: &Context) -> Option<TextureHandle> {
     state.outdoors.kept.map = Some(((sky, scale), texture.clone()));
     Some(texture)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_runs_while_it_is_played_and_midnight_may_begin_the_next_day() {
+        let mut shown = OutdoorState { time_h: 23.0, hours_a_second: 2.0, ..OutdoorState::default() };
+        shown.play(1.0);
+        assert_eq!(shown.time_h, 23.0);
+        shown.is_playing = true;
+        shown.play(1.0);
+        assert_eq!((shown.time_h, shown.date), (1.0, date(2025, 6, 21)));
+        (shown.time_h, shown.runs_on) = (23.5, true);
+        shown.play(1.0);
+        assert_eq!((shown.time_h, shown.date), (1.5, date(2025, 6, 22)));
+        assert_eq!(shown.moment(), date(2025, 6, 22).at(1, 30, 0, 0));
+        shown.time_h = 24.0;
+        assert_eq!(shown.moment(), date(2025, 6, 22).at(23, 59, 59, 0));
+    }
+}

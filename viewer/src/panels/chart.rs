@@ -22,12 +22,16 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         };
         return super::nothing(ui, state, why);
     }
-    ui.label(RichText::new("Down is more accurate, left is faster; the line joins those that no other beats in both.").weak());
+    ui.label(
+        RichText::new("Down is more accurate, left is faster; the line joins those that no other beats in both.")
+            .weak(),
+    );
 
     let front = front(&points);
     let weak = ui.visuals().weak_text_color();
     let strong = ui.visuals().strong_text_color();
-    let mut plot = Plot::new("chart").legend(Legend::default()).x_axis_label("time, s").y_axis_label("error, factor (RMS)");
+    let mut plot =
+        Plot::new("chart").legend(Legend::default()).x_axis_label("time, s").y_axis_label("error, factor (RMS)");
     plot = plot.x_grid_spacer(decades).y_grid_spacer(decades).show_grid([true, true]);
     plot = plot.x_axis_formatter(|mark, _| seconds_text(10_f64.powf(mark.value)));
     plot = plot.y_axis_formatter(|mark, _| factor_text(10_f64.powf(mark.value)));

@@ -9,6 +9,8 @@ pub mod help;
 pub mod inspector;
 pub mod layers;
 pub mod log;
+pub mod map;
+pub mod outdoors;
 pub mod scene;
 pub mod sensors;
 pub mod stages;
@@ -107,7 +109,11 @@ fn section(ui: &mut Ui, title: &str, is_open: bool, contents: impl FnOnce(&mut U
 
 /// Rows of [`row`] in two columns.
 fn rows(ui: &mut Ui, name: impl std::hash::Hash + std::fmt::Debug, contents: impl FnOnce(&mut Ui)) {
-    egui::Grid::new(ui.scope_id().with(name)).num_columns(2).spacing([10.0, 4.0]).min_col_width(74.0).show(ui, contents);
+    egui::Grid::new(ui.scope_id().with(name))
+        .num_columns(2)
+        .spacing([10.0, 4.0])
+        .min_col_width(74.0)
+        .show(ui, contents);
 }
 
 /// A row of a grid: a label and what it names.

@@ -86,7 +86,9 @@ pub fn light(ui: &mut Ui, state: &State, index: usize) {
         let shining = state.results.model.as_ref().and_then(|model| model.shining.get(index));
         match shining.map(|shining| shining.place) {
             Some(Ok(node)) => told(ui, "Enters the skeleton", format!("at node {}", node.index())),
-            Some(Err(status)) => told(ui, "Enters the skeleton", format!("nowhere: {}", status.name().replace('_', " "))),
+            Some(Err(status)) => {
+                told(ui, "Enters the skeleton", format!("nowhere: {}", status.name().replace('_', " ")))
+            }
             None => {}
         }
     });

@@ -28,11 +28,11 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     });
     ui.collapsing("What the skeleton keeps", |ui| filter(ui, state));
 
-    let mut wants_all = state.request.wants_all_methods;
+    let mut wants_all = state.request.wants.all_methods;
     let response = ui.checkbox(&mut wants_all, "Compare all methods");
     let gesture = gesture(&response);
     if response.on_hover_text("Estimate by every method, for the inspector, the table and the chart").changed() {
-        state.change(gesture, |request| request.wants_all_methods = wants_all);
+        state.change(gesture, |request| request.wants.all_methods = wants_all);
     }
 }
 
@@ -115,8 +115,12 @@ fn filter(ui: &mut Ui, state: &mut State) {
         });
     });
     let switches: [(&str, &str, fn(&mut Filter) -> &mut bool); 3] = [
-        ("Keep middles of rooms", "Without, a curve ends at a dead-end room's mouth", |filter| &mut filter.keeps_middles),
-        ("Cut branches", "Those inside the ball of what they leave: noise on walls", |filter| &mut filter.cuts_branches),
+        ("Keep middles of rooms", "Without, a curve ends at a dead-end room's mouth", |filter| {
+            &mut filter.keeps_middles
+        }),
+        ("Cut branches", "Those inside the ball of what they leave: noise on walls", |filter| {
+            &mut filter.cuts_branches
+        }),
         ("Grow dead ends", "On to their walls, which thinning stops short of", |filter| &mut filter.grows_ends),
     ];
     for (name, says, switch) in switches {
