@@ -19,10 +19,10 @@ struct Vertex {
     @location(3) @interpolate(flat) colour: vec4<f32>,
 }
 
-// Arrow heads: half their width and their length, in half widths of the line and at least in pixels.
-const HEAD_HALF: f32 = 2.5;
-const HEAD_HALF_LEAST_PX: f32 = 4.0;
-const HEAD_LENGTH: f32 = 2.4;
+// Arrow heads: half their width in half widths of the line, at least in pixels; their length in half their width.
+const HEAD_HALF: f32 = 3.0;
+const HEAD_HALF_LEAST_PX: f32 = 5.0;
+const HEAD_LENGTH: f32 = 2.2;
 // Dashes and the gaps between them, in widths of the line and in pixels besides.
 const DASH: vec2<f32> = vec2<f32>(2.0, 4.0);
 const GAP: vec2<f32> = vec2<f32>(1.0, 3.0);
