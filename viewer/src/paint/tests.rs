@@ -350,7 +350,10 @@ fn dashes_have_gaps_and_arrows_heads_at_their_ends() {
     let (arrow_left, arrow_right) = green(Stroke { arrow: true, ..plain });
     assert!((plain_left as i64 - plain_right as i64).abs() < 10);
     assert!(3 * (dashed_left + dashed_right) < 2 * (plain_left + plain_right), "gaps");
-    assert!(arrow_right > plain_right + 8 && arrow_left == plain_left, "a head at b: {arrow_right}, not {plain_right}; at a {arrow_left}, not {plain_left}");
+    assert!(
+        arrow_right > plain_right + 8 && arrow_left == plain_left,
+        "a head at b: {arrow_right}, not {plain_right}; at a {arrow_left}, not {plain_left}"
+    );
 }
 
 #[test]

@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let totals = sky.map.totals;
     ui.horizontal_wrapped(|ui| {
         ui.label(format!("{}, {}", Measure::MapRadiance.title(), Measure::MapRadiance.unit()));
-        ui.weak(format!("global horizontal {:.0} kWh/m²", totals.ghi_kwh_m2));
+        ui.weak(format!("global horizontal {} kWh/m²", number(totals.ghi_kwh_m2)));
     });
     bar(ui, state);
 

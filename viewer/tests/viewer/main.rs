@@ -1,1 +1,3 @@
 //! The viewer as its user meets it.
+
+mod outdoors;

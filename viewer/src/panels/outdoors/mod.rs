@@ -156,9 +156,9 @@ fn totals(ui: &mut Ui, state: &State) {
     let found = &state.results.outdoors;
     if let Some(sky) = &found.sky {
         let totals = sky.map.totals;
-        told(ui, "Global horizontal", format!("{:.0} kWh/m²", totals.ghi_kwh_m2));
-        told(ui, "Direct normal", format!("{:.0} kWh/m²", totals.dni_kwh_m2));
-        told(ui, "Diffuse horizontal", format!("{:.0} kWh/m²", totals.dhi_kwh_m2));
+        told(ui, "Global horizontal", energy(totals.ghi_kwh_m2));
+        told(ui, "Direct normal", energy(totals.dni_kwh_m2));
+        told(ui, "Diffuse horizontal", energy(totals.dhi_kwh_m2));
     }
     if let Some(faces) = &found.faces {
         let pass = if faces.is_first_pass { ", first pass" } else { "" };
@@ -174,6 +174,10 @@ fn totals(ui: &mut Ui, state: &State) {
     if found.seconds > 0.0 {
         told(ui, "Took", format!("{} s", super::number(found.seconds)));
     }
+}
+
+fn energy(kwh_m2: f64) -> String {
+    format!("{} kWh/m²", super::number(kwh_m2))
 }
 
 /// What was decided and what should be known.

@@ -28,7 +28,8 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         row(ui, "Zone", |ui| {
             let mut ahead_h = now.utc_offset_h.or(decided.map(|place| place.utc_offset_h)).unwrap_or(0.0);
             let drag = DragValue::new(&mut ahead_h).range(-14.0..=14.0).speed(0.02).max_decimals(2);
-            let response = ui.add(drag.prefix("UTC + ").suffix(" h"));
+            let ahead = |hours: f64, _| format!("{:+}", (hours * 100.0).round() / 100.0);
+            let response = ui.add(drag.prefix("UTC").suffix(" h").custom_formatter(ahead));
             let response = response.on_hover_text("Standard time, without daylight saving");
             changed(state, &response, |site| site.utc_offset_h = Some(ahead_h));
         });
