@@ -67,7 +67,7 @@ pub fn apply(ctx: &Context, kept: &Kept) {
         ctx.set_zoom_factor(zoom);
     }
 
-    let made = egui::Id::new("lightvein theme");
+    let made = egui::Id::unique("lightvein theme");
     if ctx.data(|data| data.get_temp::<bool>(made)).is_none() {
         ctx.data_mut(|data| data.insert_temp(made, true));
         // Keys of the text scale stand in the table of controls.
@@ -90,8 +90,8 @@ fn sizes(style: &mut Style) {
         heading.size = 16.0;
     }
     style.visuals.indent_has_left_vline = false;
+    style.visuals.weak_text_alpha = 0.75;
     style.visuals.slider_trailing_fill = true;
-    style.visuals.striped = true;
     style.visuals.window_corner_radius = CornerRadius::same(8);
     for widget in [
         &mut style.visuals.widgets.inactive,

@@ -96,11 +96,11 @@ const fn blender(row: TouchRow) -> TouchRow {
 /// All that the mouse does in the view.
 pub const TOUCHES: &[TouchRow] = &[
     lightvein(touch(Touch::Drag(PointerButton::Primary), Gesture::Orbit, "turn")),
-    lightvein(TouchRow { shift: true, ..touch(Touch::Drag(PointerButton::Primary), Gesture::Pan, "shift") }),
-    lightvein(touch(Touch::Drag(PointerButton::Secondary), Gesture::Pan, "shift")),
-    lightvein(touch(Touch::Drag(PointerButton::Middle), Gesture::Pan, "shift")),
+    lightvein(TouchRow { shift: true, ..touch(Touch::Drag(PointerButton::Primary), Gesture::Pan, "move aside") }),
+    lightvein(touch(Touch::Drag(PointerButton::Secondary), Gesture::Pan, "move aside")),
+    lightvein(touch(Touch::Drag(PointerButton::Middle), Gesture::Pan, "move aside")),
     blender(touch(Touch::Drag(PointerButton::Middle), Gesture::Orbit, "turn")),
-    blender(TouchRow { shift: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Pan, "shift") }),
+    blender(TouchRow { shift: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Pan, "move aside") }),
     blender(TouchRow { ctrl: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Zoom, "nearer or farther") }),
     touch(Touch::Wheel, Gesture::Zoom, "nearer or farther, to the pointer"),
     touch(Touch::Click(PointerButton::Primary), Gesture::Pick, "pick a node, a sensor, a light or a part"),

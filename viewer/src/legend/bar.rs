@@ -31,7 +31,8 @@ enum Limit {
 /// Draws the bar of a measure; the scale as its limits were dragged to, where they were.
 pub fn show(ui: &mut Ui, measure: Measure, scale: Scale, spread: &Spread) -> Option<Scale> {
     let size = vec2(ui.available_width(), HEIGHTS.iter().sum());
-    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, in_words(measure, &scale, spread)));
     let inner = rect.shrink2(vec2(ENDS, 0.0));
     let bar = Rect::from_min_size(inner.min + vec2(0.0, HEIGHTS[0]), vec2(inner.width(), HEIGHTS[1]));
     let whole = Whole { spread, low: spread.low.min(scale.low), high: spread.high.max(scale.high), bar };
@@ -56,6 +57,14 @@ pub fn show(ui: &mut Ui, measure: Measure, scale: Scale, spread: &Spread) -> Opt
         (_, Some(high)) => Some(Scale { high, ..scale }),
         (None, None) => None,
     }
+}
+
+/// What the bar shows, for who does not see it.
+fn in_words(measure: Measure, scale: &Scale, spread: &Spread) -> String {
+    let [low, high] = [scale.low, scale.high].map(|limit| crate::panels::number(f64::from(limit)));
+    let below = if spread.ends[0] < scale.low { ", some below" } else { "" };
+    let above = if spread.ends[1] > scale.high { ", some above" } else { "" };
+    format!("{} from {low} to {high} {}{below}{above}", measure.title(), measure.unit())
 }
 
 /// A bar from the least to the largest value that it has room for.

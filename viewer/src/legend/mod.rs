@@ -9,6 +9,7 @@ mod spread;
 use crate::colour::{ColourMap, GREY};
 use crate::layers::NodeColour;
 use crate::measure::Measure;
+use crate::panels::named;
 use crate::state::{Picked, State};
 use crate::theme;
 use egui::{Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
@@ -68,11 +69,12 @@ fn one(ui: &mut Ui, state: &mut State, measure: Measure) {
     };
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let refit = ui.name_inputs(format!("Refit {}", measure.title()), |ui| ui.small_button("Refit"));
+            let refit = named(ui.small_button("Refit"), &format!("Refit {}", measure.title()));
             if refit.on_hover_text("Fit the range to the values that are there now").clicked() {
                 state.refit(measure);
             }
-            ui.menu_button(RichText::new("Map").small(), |ui| {
+            let button = egui::Button::new("Map").small();
+            let (menu, _) = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
                 for map in ColourMap::ALL {
                     if ui.radio(scale.map == map, map.name()).clicked() {
                         state.kept.maps.insert(measure, map);
@@ -80,9 +82,8 @@ fn one(ui: &mut Ui, state: &mut State, measure: Measure) {
                         ui.close();
                     }
                 }
-            })
-            .response
-            .on_hover_text(format!("Colour map of {}", measure.title()));
+            });
+            named(menu, &format!("Colour map of {}", measure.title()));
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(egui::Label::new(RichText::new(title).strong()).truncate());
             });

@@ -7,7 +7,7 @@ use crate::results::Answer;
 use crate::state::State;
 use crate::theme;
 use egui::{Align2, Color32, RichText, Ui};
-use egui_plot::{GridInput, GridMark, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points, Text};
+use egui_plot::{GridInput, GridMark, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points, Text};
 use lightvein::scene::Method;
 
 /// Shows the chart; without a reference it says so.
@@ -27,12 +27,24 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             .weak(),
     );
 
+    key(ui, &points);
+    let off = off_chart(&state.results.answers);
+    if !off.is_empty() {
+        ui.label(
+            RichText::new(format!("Not on the chart, because they call lit sensors dark: {}", off.join(", "))).weak(),
+        );
+    }
+
     let front = front(&points);
     let weak = ui.visuals().weak_text_color();
     let strong = ui.visuals().strong_text_color();
     let mut plot =
-        Plot::new("chart").legend(Legend::default()).x_axis_label("time, s").y_axis_label("error, factor (RMS)");
-    plot = plot.x_grid_spacer(decades).y_grid_spacer(decades).show_grid([true, true]);
+        Plot::new("chart").x_axis_label("time for all sensors").y_axis_label("error, factor (root mean square)");
+    plot = plot
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .show_grid([true, true])
+        .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.4));
     plot = plot.x_axis_formatter(|mark, _| seconds_text(10_f64.powf(mark.value)));
     plot = plot.y_axis_formatter(|mark, _| factor_text(10_f64.powf(mark.value)));
     plot = plot.set_margin_fraction(egui::vec2(0.15, 0.15)).allow_scroll(false).include_y(0.0);
@@ -59,6 +71,45 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             );
         }
     });
+}
+
+/// Which sign and colour a method has.
+fn key(ui: &mut Ui, points: &[Point]) {
+    ui.horizontal_wrapped(|ui| {
+        for method in Method::ALL.into_iter().filter(|method| points.iter().any(|point| point.method == *method)) {
+            let (shape, colour) = mark(method);
+            let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(13.0), egui::Sense::hover());
+            paint_mark(ui, rect.center(), shape, colour);
+            ui.label(method.name());
+            ui.add_space(8.0);
+        }
+    });
+}
+
+/// A mark as the plot draws it.
+fn paint_mark(ui: &Ui, at: egui::Pos2, shape: MarkerShape, colour: Color32) {
+    let corners = |angles: &[f32]| -> Vec<egui::Pos2> {
+        angles.iter().map(|turns| at + 6.0 * egui::Vec2::angled(turns * std::f32::consts::TAU)).collect()
+    };
+    let filled = |angles: &[f32]| egui::Shape::convex_polygon(corners(angles), colour, egui::Stroke::NONE);
+    let painter = ui.painter();
+    match shape {
+        MarkerShape::Square => drop(painter.add(filled(&[0.125, 0.375, 0.625, 0.875]))),
+        MarkerShape::Diamond => drop(painter.add(filled(&[0.0, 0.25, 0.5, 0.75]))),
+        MarkerShape::Up => drop(painter.add(filled(&[0.75, 0.083, 0.417]))),
+        MarkerShape::Asterisk => {
+            for end in corners(&[0.75, 0.083, 0.417]) {
+                painter.line_segment([at - (end - at), end], egui::Stroke::new(2.0, colour));
+            }
+        }
+        _ => drop(painter.circle_filled(at, 6.0, colour)),
+    }
+}
+
+/// The methods that call a lit sensor dark, and so are off by no factor.
+fn off_chart(answers: &[Answer]) -> Vec<String> {
+    let is_off = |answer: &&Answer| answer.errors.rms_factor.is_some_and(f64::is_infinite);
+    answers.iter().filter(is_off).map(Answer::label).collect()
 }
 
 /// A method on the chart.
@@ -116,7 +167,10 @@ fn mark(method: Method) -> (MarkerShape, Color32) {
     (shape, theme::colour(colour))
 }
 
-/// Grid lines at 1, 2 and 5 times each power of ten, the powers the strongest.
+/// How far apart the closest grid lines are, as logarithms.
+const NEAR: f64 = 0.12;
+
+/// Grid lines at 1, 2 and 5 times each power of ten, the powers the strongest; others between where there is room.
 fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     // A view of many decades, or none, comes of zooming far out.
@@ -126,9 +180,11 @@ fn decades(input: GridInput) -> Vec<GridMark> {
     let powers = low.floor() as i32..=high.ceil() as i32;
     let of_power = |power: i32| {
         let at = |times: f64, step_size: f64| GridMark { value: f64::from(power) + times.log10(), step_size };
-        [at(1.0, 1.0), at(2.0, 0.3), at(5.0, 0.3)]
+        [at(1.0, 1.0), at(1.5, NEAR), at(2.0, 0.3), at(3.0, NEAR), at(5.0, 0.3)]
     };
-    powers.flat_map(of_power).collect()
+    let step = input.base_step_size;
+    let is_shown = |mark: &GridMark| mark.step_size >= step && (low..=high).contains(&mark.value);
+    powers.flat_map(of_power).filter(is_shown).collect()
 }
 
 /// An error as the axis has it: `1.2x`.
@@ -152,7 +208,7 @@ mod tests {
 
     #[test]
     fn grid_lines_stand_at_one_two_and_five() {
-        let marks = decades(GridInput { bounds: (-1.2, 0.4), base_step_size: 0.1 });
+        let marks = decades(GridInput { bounds: (-1.2, 0.4), base_step_size: 0.2 });
         let values: Vec<f64> = marks.iter().map(|mark| 10_f64.powf(mark.value)).collect();
         for value in [0.1, 0.2, 0.5, 1.0, 2.0] {
             assert!(values.iter().any(|other| (other / value - 1.0).abs() < 1e-9), "{value} of {values:?}");

@@ -7,7 +7,9 @@ use egui::{Context, Grid, RichText, Ui, Window};
 /// Shows the sheet while it is asked for; a set of controls is chosen here too.
 pub fn show(ctx: &Context, state: &mut State) {
     let mut is_open = state.shows_help;
+    let height = (ctx.content_rect().height() - 80.0).max(200.0);
     let window = Window::new("Controls").open(&mut is_open).collapsible(false).resizable(false).vscroll(true);
+    let window = window.max_height(height).default_height(height).anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]);
     window.show(ctx, |ui| sheet(ui, &mut state.kept.preset));
     state.shows_help = is_open;
 }
@@ -23,12 +25,17 @@ fn sheet(ui: &mut Ui, preset: &mut Preset) {
         });
     });
     ui.separator();
-    ui.columns_const(|[left, right]| {
-        heading(left, "Mouse");
-        rows(left, "mouse", controls::touches(*preset).map(|row| (row.name(), row.does)));
-        topic(left, *preset, Topic::View);
-        topic(right, *preset, Topic::Layers);
-        topic(right, *preset, Topic::Program);
+    ui.horizontal_top(|ui| {
+        ui.vertical(|ui| {
+            heading(ui, "Mouse");
+            rows(ui, "mouse", controls::touches(*preset).map(|row| (row.name(), row.does)));
+            topic(ui, *preset, Topic::View);
+        });
+        ui.add_space(24.0);
+        ui.vertical(|ui| {
+            topic(ui, *preset, Topic::Layers);
+            topic(ui, *preset, Topic::Program);
+        });
     });
 }
 
@@ -43,17 +50,10 @@ fn heading(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).strong());
 }
 
-/// Rows of a key or a touch and what it does; several in a row that do the same are one.
+/// Rows of a key or a touch and what it does.
 fn rows(ui: &mut Ui, name: &str, rows: impl Iterator<Item = (String, &'static str)>) {
-    let mut joined: Vec<(String, &str)> = Vec::new();
-    for (key, does) in rows {
-        match joined.last_mut() {
-            Some((keys, last)) if *last == does => *keys = format!("{keys}, {key}"),
-            _ => joined.push((key, does)),
-        }
-    }
-    Grid::new(name).num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-        for (keys, does) in joined {
+    Grid::new(name).num_columns(2).spacing([12.0, 2.0]).striped(true).show(ui, |ui| {
+        for (keys, does) in rows {
             ui.label(RichText::new(keys).monospace());
             ui.label(does);
             ui.end_row();

@@ -1,6 +1,6 @@
 //! Which layers are on, and how each looks.
 
-use super::{choice, row, rows, scrolled, section};
+use super::{choice, decimals, row, rows, scrolled, section};
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Section, Slice, VoxelShow};
 use crate::state::State;
 use egui::{Slider, Ui};
@@ -25,10 +25,13 @@ pub fn show(ui: &mut Ui, state: &mut State) {
 fn layer(ui: &mut Ui, on: &mut bool, name: &str, says: &str, options: impl FnOnce(&mut Ui)) {
     ui.checkbox(on, name).on_hover_text(says);
     if *on {
-        egui::Frame::new().inner_margin(egui::Margin { left: 18, right: 0, top: 0, bottom: 2 }).show(ui, |ui| {
-            rows(ui, name, options);
-        });
+        indented(ui, |ui| rows(ui, name, options));
     }
+}
+
+fn indented(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    let margin = egui::Margin { left: 18, right: 0, top: 0, bottom: 2 };
+    egui::Frame::new().inner_margin(margin).show(ui, contents);
 }
 
 fn mesh(ui: &mut Ui, layers: &mut Layers) {
@@ -69,8 +72,12 @@ fn cuts(ui: &mut Ui, layers: &mut Layers) {
     let mut section = layers.section.unwrap_or_default();
     layer(ui, &mut is_on, "Section plane", "Hide mesh and voxels on one side of a plane", |ui| {
         let Section { azimuth_deg, elevation_deg, share } = &mut section;
-        row(ui, "Plane azimuth", |ui| ui.add(Slider::new(azimuth_deg, -180.0..=180.0).suffix("°").max_decimals(0)));
-        row(ui, "Plane elevation", |ui| ui.add(Slider::new(elevation_deg, -90.0..=90.0).suffix("°").max_decimals(0)));
+        row(ui, "Plane azimuth", |ui| {
+            ui.add(Slider::new(azimuth_deg, -180.0..=180.0).suffix("°").custom_formatter(decimals(0)))
+        });
+        row(ui, "Plane elevation", |ui| {
+            ui.add(Slider::new(elevation_deg, -90.0..=90.0).suffix("°").custom_formatter(decimals(0)))
+        });
         row(ui, "Plane position", |ui| ui.add(percent(share)));
     });
     layers.section = is_on.then_some(section);
@@ -84,7 +91,7 @@ fn percent(share: &mut f32) -> Slider<'_> {
         }
         f64::from(*share) * 100.0
     };
-    Slider::from_get_set(0.0..=100.0, get_set).suffix(" %").max_decimals(0)
+    Slider::from_get_set(0.0..=100.0, get_set).suffix(" %").custom_formatter(decimals(0))
 }
 
 fn skeleton(ui: &mut Ui, layers: &mut Layers) {
@@ -100,14 +107,13 @@ fn skeleton(ui: &mut Ui, layers: &mut Layers) {
 
 fn lights(ui: &mut Ui, layers: &mut Layers) {
     ui.checkbox(&mut layers.lights, "Lights");
-    let (values, ratios) = (&mut layers.sensor_values, &mut layers.sensor_ratios);
-    layer(ui, &mut layers.sensors, "Sensors", "Where light is asked for", |ui| {
-        ui.vertical(|ui| {
-            ui.checkbox(values, "Values beside sensors");
-            ui.checkbox(ratios, "Colour by estimate / reference");
+    ui.checkbox(&mut layers.sensors, "Sensors").on_hover_text("Where light is asked for");
+    if layers.sensors {
+        indented(ui, |ui| {
+            ui.checkbox(&mut layers.sensor_values, "Values beside sensors");
+            ui.checkbox(&mut layers.sensor_ratios, "Colour by estimate / reference");
         });
-        ui.end_row();
-    });
+    }
     ui.checkbox(&mut layers.ball, "Ball of the picked node").on_hover_text("The largest ball in the void around it");
     ui.checkbox(&mut layers.paths, "Paths to the lights")
         .on_hover_text("From what is picked: forward solid, backward dashed, with the farthest visible node");

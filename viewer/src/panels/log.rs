@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
 fn one(ui: &mut Ui, number: usize, entry: &Entry) {
     let (word, colour) = level(entry.level, ui);
     ui.horizontal_top(|ui| {
-        let copy = ui.small_button("Copy").on_hover_text(format!("Copy entry {}", number + 1));
+        let copy = super::named(ui.small_button("Copy"), &format!("Copy entry {}", number + 1));
         if copy.clicked() {
             ui.copy_text(entry.line());
         }

@@ -76,6 +76,13 @@ impl Pane {
     }
 }
 
+/// Width of the labels of rows, and of the number beside a slider, points.
+const LABELS: f32 = 110.0;
+const NUMBERS: f32 = 76.0;
+
+/// Narrowest and widest slider, points.
+const SLIDERS: [f32; 2] = [56.0, 170.0];
+
 /// The number of the gesture that a widget is in: a drag, a click or a typed number has one, and so is one step to undo.
 pub fn gesture(response: &Response) -> u64 {
     let ctx = &response.ctx;
@@ -109,6 +116,8 @@ fn section(ui: &mut Ui, title: &str, is_open: bool, contents: impl FnOnce(&mut U
 
 /// Rows of [`row`] in two columns.
 fn rows(ui: &mut Ui, name: impl std::hash::Hash + std::fmt::Debug, contents: impl FnOnce(&mut Ui)) {
+    // A slider takes what its label and its number leave.
+    ui.spacing_mut().slider_width = (ui.available_width() - LABELS - NUMBERS).clamp(SLIDERS[0], SLIDERS[1]);
     egui::Grid::new(ui.scope_id().with(name))
         .num_columns(2)
         .spacing([10.0, 4.0])
@@ -122,6 +131,12 @@ fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let inner = ui.horizontal(|ui| ui.label_inputs_by(label.id, contents)).inner;
     ui.end_row();
     inner
+}
+
+/// Gives a widget a name of its own for screen readers, where its text says too little: `Remove light 2` for `Remove`.
+pub fn named(response: Response, name: &str) -> Response {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+    response
 }
 
 /// A row of a grid that tells a value, which can be selected and copied.
@@ -141,6 +156,11 @@ fn choice<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, all: &[T], name: impl
         }
     });
     *value != before
+}
+
+/// A slider's number with so many decimals. A slider that were told to have them would round the value itself, unasked.
+fn decimals(count: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> String {
+    move |value, _| format!("{value:.count$}")
 }
 
 /// A number with as many digits as it is worth telling: four, in powers of ten where it is tiny or huge.

@@ -49,9 +49,8 @@ fn bar(ui: &mut Ui, stage: &Stage, share: f32) {
     let height = ui.text_style_height(&egui::TextStyle::Body) + 2.0;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let time = seconds_text(stage.seconds);
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::WidgetType::Label, true, format!("{} {time} {memory}", stage.name))
-    });
+    response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{} {time} {memory}", stage.name)));
 
     let painter = ui.painter_at(rect);
     let visuals = ui.visuals();

@@ -1,3 +1,8 @@
 //! The viewer as its user meets it.
 
+mod keys;
+mod legend;
 mod outdoors;
+mod panels;
+mod scene;
+mod sensors;

@@ -1,9 +1,11 @@
 //! The numbers of what is picked, with their units.
 
 use super::{reading, reference};
+use crate::measure::Measure;
 use crate::panels::{number, position, rows, told};
 use crate::state::{Picked, State};
 use egui::Ui;
+use lightvein::daylight::Quantity;
 use lightvein::light::Reading;
 use lightvein::scene::{Light, Reference};
 use petgraph::graph::NodeIndex;
@@ -42,6 +44,13 @@ pub fn sensor(ui: &mut Ui, state: &State, index: usize) {
         if let Some(reading) = reading(state, Picked::Sensor(index)) {
             let quantity = if sensor.normal.is_some() { "Irradiance" } else { "Scalar irradiance" };
             answer(ui, &reading, quantity, reference(state, Picked::Sensor(index)));
+        }
+        let exposures = state.results.outdoors.sensors.as_ref().map(|sensors| &sensors.exposures);
+        if let Some(exposure) = exposures.and_then(|exposures| exposures.get(index)) {
+            for quantity in Quantity::ALL {
+                let measure = Measure::of(quantity);
+                told(ui, measure.title(), format!("{} {}", number(quantity.of(exposure)), measure.unit()));
+            }
         }
     });
 }

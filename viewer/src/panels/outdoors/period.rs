@@ -10,7 +10,6 @@ use lightvein::sky::steps::Period;
 
 /// Shows the period and the air, and changes them.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    ui.spacing_mut().slider_width = 130.0;
     let now = site(state);
     rows(ui, "period", |ui| {
         let year = state.outdoors.date.year();

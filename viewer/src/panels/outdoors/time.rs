@@ -10,7 +10,6 @@ const HOURS_A_SECOND: std::ops::RangeInclusive<f64> = 0.05..=24.0;
 
 /// Shows the moment, and changes it.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    ui.spacing_mut().slider_width = 130.0;
     let shown = &mut state.outdoors;
     rows(ui, "moment", |ui| {
         row(ui, "Date", |ui| day_of_year(ui, &mut shown.date));

@@ -1,6 +1,6 @@
 //! How the estimate is made: voxels, method, quality, filter, seed.
 
-use crate::panels::{choice, gesture, row, rows};
+use crate::panels::{choice, gesture, named, row, rows};
 use crate::request::How;
 use crate::state::State;
 use egui::{DragValue, Ui};
@@ -90,11 +90,12 @@ fn voxel(ui: &mut Ui, state: &mut State) {
     let speed = f64::from(voxel_m) * 0.005;
     let drag = DragValue::new(&mut voxel_m).range(VOXEL_M).speed(speed).suffix(" m");
     // Halfway through typing `0.05` stands a `0`.
-    let response = ui.add(drag.max_decimals(6).update_while_editing(false));
+    let response = named(ui.add(drag.max_decimals(6).update_while_editing(false)), "Voxel size");
     changed(state, &response, |how| how.voxel_m = Some(voxel_m));
     match (asked, of_file) {
         (Some(_), _) => {
-            let reset = ui.button("Reset").on_hover_text("As the scene file has it, or chosen by the library");
+            let reset = named(ui.button("Reset"), "Reset voxel size")
+                .on_hover_text("As the scene file has it, or chosen by the library");
             if reset.clicked() {
                 state.change(gesture(&reset), |request| request.how.voxel_m = None);
             }
@@ -109,24 +110,26 @@ fn filter(ui: &mut Ui, state: &mut State) {
     rows(ui, "filter", |ui| {
         row(ui, "Least life", |ui| {
             let drag = DragValue::new(&mut filter.least_life_layers).range(0..=Filter::MOST_LAYERS);
-            let response = ui.add(drag.suffix(" layers").speed(0.05));
+            let response = named(ui.add(drag.suffix(" layers").speed(0.05)), "Least life");
             let response = response.on_hover_text("Above 6, side branches go, the shortest first");
             changed(state, &response, |how| how.filter = filter);
         });
     });
-    let switches: [(&str, &str, fn(&mut Filter) -> &mut bool); 3] = [
-        ("Keep middles of rooms", "Without, a curve ends at a dead-end room's mouth", |filter| {
-            &mut filter.keeps_middles
-        }),
-        ("Cut branches", "Those inside the ball of what they leave: noise on walls", |filter| {
-            &mut filter.cuts_branches
-        }),
-        ("Grow dead ends", "On to their walls, which thinning stops short of", |filter| &mut filter.grows_ends),
-    ];
-    for (name, says, switch) in switches {
-        let response = ui.checkbox(switch(&mut filter), name).on_hover_text(says);
+    let mut switch = |on: fn(&mut Filter) -> &mut bool, name: &str, says: &str| {
+        let response = ui.checkbox(on(&mut filter), name).on_hover_text(says);
         changed(state, &response, |how| how.filter = filter);
-    }
+    };
+    switch(
+        |filter| &mut filter.keeps_middles,
+        "Keep middles of rooms",
+        "Without, a curve ends at a dead-end room's mouth",
+    );
+    switch(
+        |filter| &mut filter.cuts_branches,
+        "Cut branches",
+        "Those inside the ball of what they leave: noise on walls",
+    );
+    switch(|filter| &mut filter.grows_ends, "Grow dead ends", "On to their walls, which thinning stops short of");
     let reset = ui.add_enabled(filter != Filter::default(), egui::Button::new("Reset filter"));
     if reset.clicked() {
         state.change(gesture(&reset), |request| request.how.filter = Filter::default());

@@ -1,7 +1,7 @@
 //! The lights: where each is, in the user's coordinates, and how strong.
 
 use super::LISTED;
-use crate::panels::{gesture, row, rows};
+use crate::panels::{gesture, named, row, rows};
 use crate::state::{Picked, State};
 use egui::{Button, DragValue, Response, Ui};
 use glam::{DVec3, Vec3};
@@ -65,7 +65,7 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
             state.picked = (!is_picked).then_some(Picked::Light(number));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let remove = ui.name_inputs(format!("Remove light {number}"), |ui| ui.small_button("Remove"));
+            let remove = named(ui.small_button("Remove"), &format!("Remove light {number}"));
             if remove.clicked() {
                 let mut left = lights.to_vec();
                 left.remove(number);
@@ -75,10 +75,11 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
         });
     });
     rows(ui, "light", |ui| {
-        row(ui, &format!("Flux of light {number}"), |ui| {
+        row(ui, "Flux", |ui| {
             let mut flux_w = light.flux_w();
             let drag = DragValue::new(&mut flux_w).range(0.0..=MOST_FLUX_W.max(light.flux_w())).suffix(" W");
             let response = ui.add(drag.speed((light.flux_w() * 0.01).max(0.1)).max_decimals(3));
+            let response = named(response, &format!("Flux of light {number}"));
             changed(state, &response, lights, number, with_flux(light, flux_w));
         });
         row(ui, "Position", |ui| {
@@ -87,8 +88,8 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
             for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
                 let mut along_m = at_m[axis];
                 let drag = DragValue::new(&mut along_m).range(-FARTHEST_M..=FARTHEST_M).speed(0.02).max_decimals(3);
-                let label = format!("{name} of light {number}");
-                let response = ui.name_inputs(label, |ui| ui.add(drag.prefix(format!("{name} ")).suffix(" m")));
+                let response = ui.add(drag.prefix(format!("{name} ")).suffix(" m"));
+                let response = named(response, &format!("{name} of light {number}"));
                 let mut moved = DVec3::from_array(at_m);
                 moved[axis] = along_m;
                 let to_m = (moved - scene.origin_m).as_vec3();

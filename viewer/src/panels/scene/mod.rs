@@ -8,7 +8,7 @@ mod parts;
 
 pub use lights::{asked as asked_lights, middle_m, moved_by, with_flux};
 
-use super::{gesture, row, rows, scrolled, section};
+use super::{decimals, gesture, row, rows, scrolled, section};
 use crate::state::{Action, State};
 use egui::{Slider, Ui};
 
@@ -56,7 +56,7 @@ fn reflectances(ui: &mut Ui, state: &mut State, scene: &lightvein::scene::Scene)
                 }
                 let edited = state.request.edits.reflectances.get(&number).copied();
                 let mut reflectance = edited.unwrap_or(material.reflectance);
-                let response = ui.add(Slider::new(&mut reflectance, 0.0..=1.0).max_decimals(2));
+                let response = ui.add(Slider::new(&mut reflectance, 0.0..=1.0).custom_formatter(decimals(2)));
                 let gesture = gesture(&response);
                 if response.changed() {
                     state.change(gesture, |request| {

@@ -1,6 +1,6 @@
 //! Parts of the mesh: hide, move, scale.
 
-use crate::panels::{gesture, row, rows};
+use crate::panels::{gesture, named, row, rows};
 use crate::state::{Picked, State};
 use egui::{DragValue, Slider, Ui};
 use glam::DVec3;
@@ -77,7 +77,7 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
                 let mut move_m = done.move_m;
                 let drag = DragValue::new(&mut move_m[axis]).range(-FARTHEST_MOVE_M..=FARTHEST_MOVE_M).speed(0.05);
                 let drag = drag.max_decimals(3).prefix(format!("{name} ")).suffix(" m");
-                let response = ui.name_inputs(format!("Move part along {name}"), |ui| ui.add(drag));
+                let response = named(ui.add(drag), &format!("Move part along {name}"));
                 changed(state, &response, &part.name, Done { move_m, ..done });
             }
         });

@@ -24,7 +24,7 @@ struct Kept {
 
 /// Shows the table; a click on a heading sorts by it, one on a row picks its sensor.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    let Some(table) = Table::of(&state.results).filter(|table| table.len() > 0) else {
+    let Some(table) = Table::of(&state.results).filter(|table| !table.is_empty()) else {
         return super::nothing(ui, state, "the scene has no sensors");
     };
     let key = ui.scope_id().with("sensors");
@@ -73,6 +73,7 @@ fn grid(
     let mut picked = None;
     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         let widths = columns.iter().map(|column| match column {
+            Column::Number => egui_extras::Column::initial(48.0).at_least(36.0).clip(true),
             Column::Id => egui_extras::Column::initial(110.0).at_least(50.0).clip(true),
             _ => egui_extras::Column::initial(92.0).at_least(50.0).clip(true),
         });
@@ -97,7 +98,7 @@ fn grid(
                 row.set_selected(state.picked == Some(Picked::Sensor(sensor)));
                 for column in columns {
                     row.col(|ui| {
-                        let text = table.cell(*column, sensor).shown();
+                        let text = table.cell(*column, sensor).shown(*column);
                         ui.add(egui::Label::new(text).selectable(false).truncate());
                     });
                 }
@@ -136,9 +137,11 @@ pub fn csv(state: &State) -> String {
 
 impl table::Cell {
     /// As it stands on screen.
-    fn shown(&self) -> String {
+    fn shown(&self, column: Column) -> String {
         match self {
+            Self::Text(text) if column == Column::Status => text.replace('_', " "),
             Self::Text(text) => text.clone(),
+            Self::Number(value) if column == Column::Number => value.to_string(),
             Self::Number(value) => number(*value),
             Self::Missing => "-".to_owned(),
         }
