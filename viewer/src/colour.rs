@@ -99,7 +99,7 @@ impl Scale {
         let [low, per_step, at_low] = self.straight();
         let place = if self.logarithmic { value.log2() } else { value };
         let missing = value.is_nan() || (self.logarithmic && value <= 0.0);
-        (!missing).then(|| (place - low) * per_step + at_low).filter(|share| !share.is_nan())
+        (!missing).then_some((place - low) * per_step + at_low).filter(|share| !share.is_nan())
     }
 
     /// The value's colour, sRGB: clipped at the ends, grey where it has none.

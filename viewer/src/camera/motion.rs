@@ -28,30 +28,39 @@ impl Camera {
         camera
     }
 
-    /// Moves so that the box fills 95% of the picture one way and less the other; the direction stays.
+    /// Moves so that the box stands in the picture's middle and fills 95% of it one way and less the other; the direction
+    /// stays. The target is then at the depth of the box's middle.
     pub fn fit(&mut self, bounds_m: (Vec3, Vec3), aspect: f32) {
         let (least_m, most_m) = bounds_m;
         if !(least_m.is_finite() && most_m.is_finite() && least_m.cmple(most_m).all()) {
             return;
         }
-        self.target_m = (least_m + most_m) / 2.0;
         let half_m = (most_m - least_m) / 2.0;
         let up_slope = (self.field_of_view_rad / 2.0).tan() * FILLED;
-        let right_slope = up_slope * aspect;
+        let (across_m, across_distance_m) = self.fit_along(self.right(), up_slope * aspect, half_m);
+        let (above_m, above_distance_m) = self.fit_along(self.up(), up_slope, half_m);
 
-        // Each corner asks for a distance at which it is just inside; the farthest that is asked shows them all.
-        let asked_m = corner_signs().map(|signs| {
-            let corner_m = half_m * signs;
-            let beside_m = corner_m.dot(self.right()).abs() / right_slope;
-            let above_m = corner_m.dot(self.up()).abs() / up_slope;
-            let nearer_m = if self.orthographic { 0.0 } else { -corner_m.dot(self.forward()) };
-            nearer_m + beside_m.max(above_m)
-        });
-        let distance_m = asked_m.fold(0.0, f32::max);
+        self.target_m = (least_m + most_m) / 2.0 + self.right() * across_m + self.up() * above_m;
+        let distance_m = across_distance_m.max(above_distance_m);
         self.distance_m = if distance_m > 0.0 { clamped_m(distance_m) } else { 1.0 };
     }
 
-    /// Turns to a direction that has a name; target and distance stay.
+    /// Where along one axis of the picture the target must be, from the middle of a box of this half extent, and how far
+    /// the eye, for the box to lie just between two planes that open by `slope` from the gaze.
+    fn fit_along(&self, axis: Vec3, slope: f32, half_m: Vec3) -> (f32, f32) {
+        // Nearer corners reach further out in perspective.
+        let opening = if self.orthographic { 0.0 } else { slope };
+        let reach_m = |side: f32| {
+            let corner_m = corner_signs().map(|signs| half_m * signs);
+            let reaches_m = corner_m.map(|corner_m| side * corner_m.dot(axis) - opening * corner_m.dot(self.forward()));
+            reaches_m.fold(0.0, f32::max)
+        };
+        let (one_m, other_m) = (reach_m(1.0), reach_m(-1.0));
+        ((one_m - other_m) / 2.0, (one_m + other_m) / (2.0 * slope))
+    }
+
+    /// Turns to a direction that has a name; target and distance stay. What was fitted is to be fitted anew: in perspective
+    /// the target of a fitted box stands off the box's middle.
     pub fn look_from(&mut self, standard: Standard) {
         (self.azimuth_rad, self.elevation_rad) = standard.angles_rad();
     }
@@ -121,12 +130,18 @@ mod tests {
                     camera.look_from(standard);
                     camera.fit(bounds_m, size_px.x / size_px.y);
                     let (middle_m, half_m) = ((bounds_m.0 + bounds_m.1) / 2.0, (bounds_m.1 - bounds_m.0) / 2.0);
-                    let filled = corner_signs().map(|signs| {
-                        let (px, _) = camera.project(middle_m + half_m * signs, size_px).unwrap();
-                        (2.0 * px / size_px - Vec2::ONE).abs().max_element()
-                    });
-                    let filled = filled.fold(0.0, f32::max);
+                    let corners: Vec<Vec2> = corner_signs()
+                        .map(|signs| {
+                            camera.project(middle_m + half_m * signs, size_px).unwrap().0 / size_px * 2.0 - 1.0
+                        })
+                        .collect();
+                    let least = corners.iter().copied().fold(Vec2::ONE, Vec2::min);
+                    let most = corners.iter().copied().fold(Vec2::NEG_ONE, Vec2::max);
+                    let filled = most.max(-least).max_element();
                     assert!((filled - 0.95).abs() < 1e-3, "{standard:?} fills {filled} of {size_px}");
+                    let limiting =
+                        if (most - least).x > (most - least).y { (most + least).x } else { (most + least).y };
+                    assert!(limiting.abs() < 1e-3, "{standard:?} stands off the middle by {limiting}");
                 }
             }
         }

@@ -26,8 +26,9 @@ const HEAD_LENGTH: f32 = 2.2;
 // Dashes and the gaps between them, in widths of the line and in pixels besides.
 const DASH: vec2<f32> = vec2<f32>(2.0, 4.0);
 const GAP: vec2<f32> = vec2<f32>(1.0, 3.0);
-// How much nearer than they are strokes are drawn: those on a surface are not swallowed by it.
-const NEARER_PX: f32 = 2.0;
+// How much nearer than they are strokes are drawn: those on a surface are not swallowed by it, and the balls that they
+// join still hide them.
+const NEARER_PX: f32 = 0.75;
 
 // The part of a line, as shares of it, on the side of a plane where `a` and `b`, the signed distances of its ends
 // to the plane, are above zero.

@@ -1,8 +1,9 @@
 //! What is seen: pictures of known scenes, pixel by pixel.
 
+mod shown;
+
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 
-use eframe::egui;
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
 
@@ -32,6 +33,7 @@ fn offscreen() -> Option<MutexGuard<'static, Offscreen>> {
 fn camera() -> Camera {
     let mut camera = Camera::fitted((Vec3::NEG_ONE, Vec3::ONE), 4.0 / 3.0);
     camera.look_from(Standard::Front);
+    camera.target_m = Vec3::ZERO;
     camera.distance_m = 10.0;
     camera
 }
@@ -368,35 +370,6 @@ fn a_stroke_that_passes_the_eye_is_drawn_up_to_it() {
 }
 
 #[test]
-fn an_equal_picture_is_not_drawn_again_and_data_go_up_once() {
-    let Some(mut offscreen) = offscreen() else { return };
-    let data = wall(Vec3::ZERO, 1.0, 0.0, RED, 3);
-    let mut picture = picture(vec![flat(Arc::clone(&data), Culling::None)]);
-    let (redraws, uploads) = (offscreen.canvas().redraws(), offscreen.canvas().uploads());
-    let mut work = |picture: &Picture, size_px| {
-        offscreen.draw(picture, size_px).unwrap();
-        (offscreen.canvas().redraws() - redraws, offscreen.canvas().uploads() - uploads)
-    };
-    assert_eq!(work(&picture, SIZE_PX), (1, 1));
-    assert_eq!(work(&picture.clone(), SIZE_PX), (1, 1), "equal");
-    assert_eq!(work(&picture, [100, 100]), (2, 1), "another size");
-    picture.camera.distance_m += 1.0;
-    assert_eq!(work(&picture, [100, 100]), (3, 1), "another camera");
-    picture.batches.push(Batch::new(What::Faces {
-        data: Arc::clone(&data),
-        style: FaceStyle::Wireframe,
-        culling: Culling::None,
-    }));
-    assert_eq!(work(&picture, [100, 100]), (4, 1), "the same data in another style");
-    let shown = std::mem::take(&mut picture.batches);
-    assert_eq!(work(&picture, [100, 100]), (5, 1));
-    picture.batches = shown;
-    assert_eq!(work(&picture, [100, 100]), (6, 1), "hidden for a while");
-    picture.batches[0] = flat(Arc::new(data.to_vec()), Culling::None);
-    assert_eq!(work(&picture, [100, 100]), (7, 2), "other data");
-}
-
-#[test]
 fn nothing_and_broken_numbers_draw_the_background() {
     let Some(mut offscreen) = offscreen() else { return };
     let empty = vec![
@@ -420,24 +393,4 @@ fn a_background_fades_from_top_to_bottom() {
     let image = offscreen.render_picture(&picture, SIZE_PX).unwrap();
     let [top, middle, bottom] = [0, SIZE_PX[1] / 2, SIZE_PX[1] - 1].map(|y| image.get_pixel(7, y).0);
     assert!(top[2] >= 198 && bottom[0] >= 98 && middle[0].abs_diff(50) < 3 && middle[2].abs_diff(100) < 3);
-}
-
-#[test]
-fn a_user_interface_shows_its_pictures_where_they_belong() {
-    let Some(mut offscreen) = offscreen() else { return };
-    let shown = Arc::new(picture(vec![ball(Vec3::ZERO, 1.0, 0.0, RED)]));
-    let left = egui::Rect::from_min_size(egui::pos2(10.0, 10.0), egui::vec2(100.0, 75.0));
-    let right = left.translate(egui::vec2(150.0, 20.0));
-    let other = Arc::new(picture(vec![ball(Vec3::ZERO, 1.0, 0.0, GREEN)]));
-    let image = offscreen.render_ui([600, 240], 2.0, |ui| {
-        ui.painter().add(callback(left, 1, Arc::clone(&shown)));
-        ui.painter().add(callback(right, 2, Arc::clone(&other)));
-    });
-    let image = image.unwrap();
-    let at = |point: egui::Pos2| image.get_pixel((2.0 * point.x) as u32, (2.0 * point.y) as u32).0;
-    assert_eq!(at(left.center())[..3], [255, 0, 0]);
-    assert_eq!(at(right.center())[..3], [0, 255, 0]);
-    assert_eq!(at(left.left_top() + egui::vec2(2.0, 2.0))[..3], BACKGROUND);
-    assert_ne!(at(left.left_top() - egui::vec2(2.0, 2.0))[..3], BACKGROUND);
-    assert_eq!(work_done(offscreen.render_state(), 1), Some((1, 1)));
 }
