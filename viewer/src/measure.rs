@@ -114,6 +114,8 @@ impl Measure {
         let (low, high) = match self {
             Self::Ratio => colour::ratio_range(values),
             Self::Svf => (0.0, 1.0),
+            // The whole sky has light: its darkest part is the foot of the scale, not four decades below the brightest.
+            Self::MapRadiance => colour::linear_range(values.filter(|value| *value > 0.0)),
             _ if self.is_logarithmic() => colour::flux_range(values),
             _ => colour::linear_range(values),
         };

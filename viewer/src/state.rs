@@ -37,6 +37,8 @@ pub enum Action {
     OpenDialog,
     /// Open a scene file or a mesh.
     Open(PathBuf),
+    /// Ask for a weather file and take it.
+    ChooseWeather,
     /// Compute again from the file.
     Reload,
     /// Stop the run.

@@ -1,5 +1,6 @@
 //! Pictures of sun, sky and exposure for the view: plain data for `paint`, and names beside them.
 
+use super::sky::Sky;
 use super::sun::{DOME, SunDay, SunNow, dome_corner};
 use super::{FaceExposure, PixelExposure, values_of};
 use crate::colour::Scale;
@@ -194,4 +195,16 @@ pub fn picture(pixels: &PixelExposure, quantity: Quantity, scale: &Scale) -> egu
         }
     }
     egui::ColorImage::new(size, colours)
+}
+
+/// The exposure map, row 0 of the picture at the zenith.
+pub fn map(sky: &Sky, scale: &Scale) -> egui::ColorImage {
+    let [columns, rows] = sky.map.size;
+    let radiances = sky.radiances();
+    let from_zenith = radiances.chunks(columns.max(1)).rev().flatten();
+    let colours = from_zenith.map(|&radiance| {
+        let [r, g, b] = scale.colour(radiance);
+        egui::Color32::from_rgb(r, g, b)
+    });
+    egui::ColorImage::new([columns, rows], colours.collect())
 }

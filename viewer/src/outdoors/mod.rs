@@ -1,17 +1,17 @@
 //! Sun and sky: what is asked of them, what they give, and what of it is shown.
 //!
 //! [`compute`] answers an [`OutdoorRequest`] on the worker's thread, [`sun`] says where the sun stands at the shown moment, and
-//! [`draw`] makes pictures of both. All figures are the library's: `lightvein::sky` and `lightvein::daylight`.
+//! [`draw`] makes pictures of both, and [`shown`] keeps what is on the screen. All figures are the library's: `lightvein::sky` and `lightvein::daylight`.
 
 pub mod compute;
 pub mod draw;
+pub mod shown;
 pub mod sky;
 pub mod sun;
+#[cfg(test)]
+mod tests;
 
 use crate::measure::Measure;
-use crate::state::State;
-use glam::Vec2;
-use jiff::civil::{Date, DateTime, date};
 use lightvein::daylight::Exposure;
 use lightvein::daylight::Quantity;
 use lightvein::daylight::camera::{Buffers, Camera};
@@ -19,6 +19,7 @@ use lightvein::daylight::surface::Patch;
 use lightvein::daylight::way::Prepared;
 use lightvein::light::Status;
 use lightvein::scene::Site;
+pub use shown::OutdoorState;
 use sky::{Scenery, Sky};
 use std::sync::Arc;
 
@@ -136,72 +137,5 @@ pub fn values_of(exposures: &[Exposure], quantity: Quantity) -> impl Iterator<It
     exposures.iter().map(move |exposure| match exposure.status {
         Status::Ok | Status::Dark => quantity.of(exposure) as f32,
         Status::InSolid | Status::Unreached | Status::Outside => f32::NAN,
-    })
-}
-
-/// Sun and sky as the panels show them.
-#[derive(Debug, Clone)]
-pub struct OutdoorState {
-    /// The day that is shown.
-    pub date: Date,
-    /// The time that is shown, hours since midnight, local standard time.
-    pub time_h: f64,
-    /// Whether the shown time runs.
-    pub is_playing: bool,
-    /// How fast it runs, hours a second.
-    pub hours_a_second: f64,
-    /// Whether it goes on to the next day at midnight, instead of beginning the same one again.
-    pub runs_on: bool,
-}
-
-impl Default for OutdoorState {
-    fn default() -> Self {
-        Self { date: date(2025, 6, 21), time_h: 12.0, is_playing: false, hours_a_second: 2.0, runs_on: false }
-    }
-}
-
-impl OutdoorState {
-    /// The shown moment.
-    pub fn moment(&self) -> DateTime {
-        let seconds = (self.time_h.clamp(0.0, 24.0) * 3600.0).round().min(86_399.0) as i64;
-        let midnight = self.date.at(0, 0, 0, 0);
-        midnight.checked_add(jiff::SignedDuration::from_secs(seconds)).unwrap_or(midnight)
-    }
-
-    /// Lets so many seconds of the viewer's own time go by.
-    pub fn play(&mut self, seconds: f64) {
-        if !self.is_playing {
-            return;
-        }
-        let later_h = self.time_h + seconds * self.hours_a_second;
-        if self.runs_on && later_h >= 24.0 {
-            self.date = self.date.tomorrow().unwrap_or(self.date);
-        }
-        self.time_h = later_h.rem_euclid(24.0);
-    }
-}
-
-/// Asks for the pixels of the view as it is now, or no more; to be called when the camera has come to rest. A view is looked at
-/// and not changed by hand, so it is no step to undo.
-pub fn follow_view(state: &mut State, size_px: Vec2) {
-    let wanted = state.layers.per_pixel.then(|| seen_by(&state.camera, size_px)).flatten();
-    if let Some(asked) = &mut state.request.outdoors
-        && asked.view != wanted
-    {
-        asked.view = wanted;
-    }
-}
-
-/// The camera of the view as the library has it; `None` for a parallel projection, which it does not know.
-pub fn seen_by(camera: &crate::camera::Camera, size_px: Vec2) -> Option<Camera> {
-    let size = [size_px.x.round() as usize, size_px.y.round() as usize];
-    let is_picture = size.iter().all(|side| (1..=10_000).contains(side));
-    (is_picture && !camera.orthographic).then(|| Camera {
-        from_m: camera.eye_m(),
-        forward: camera.forward(),
-        right: camera.right(),
-        up: camera.up(),
-        fov_rad: f64::from(camera.field_of_view_rad),
-        size,
     })
 }

@@ -64,6 +64,15 @@ impl Sky {
         let texels = map.diffuse_kwh_m2.iter().zip(&map.direct_kwh_m2).enumerate();
         texels.map(|(at, (sky, sun))| (sky + sun) / map.solid_angle_sr(at / columns.max(1)) as f32).collect()
     }
+
+    /// What comes from a direction, kWh/m2/sr; azimuth clockwise from true north.
+    pub fn radiance_at(&self, azimuth_rad: f64, elevation_rad: f64) -> f32 {
+        let [column, row] = self.map.texel(azimuth_rad, elevation_rad);
+        let at = row * self.map.size[0] + column;
+        let energy = |energies: &[f32]| energies.get(at).copied().unwrap_or(0.0);
+        let both_kwh_m2 = energy(&self.map.diffuse_kwh_m2) + energy(&self.map.direct_kwh_m2);
+        both_kwh_m2 / self.map.solid_angle_sr(row) as f32
+    }
 }
 
 fn of_sun(error: SunError) -> Failed {

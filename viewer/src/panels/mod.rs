@@ -9,6 +9,8 @@ pub mod help;
 pub mod inspector;
 pub mod layers;
 pub mod log;
+pub mod map;
+pub mod outdoors;
 pub mod scene;
 pub mod sensors;
 pub mod stages;

@@ -2,6 +2,7 @@
 
 mod keys;
 mod legend;
+mod outdoors;
 mod panels;
 mod scene;
 mod sensors;
