@@ -9,24 +9,6 @@ use serde::{Deserialize, Serialize};
 
 /// Colour of what has no value, sRGB. Lighter than the middle, where cividis is all but grey.
 pub const GREY: [u8; 3] = [164, 164, 164];
-
-/// Names without an order: Okabe and Ito's colours, told apart by any colour vision, black left out.
-const CATEGORIES: [[u8; 3]; 7] = [
-    [0x56, 0xb4, 0xe9],
-    [0xe6, 0x9f, 0x00],
-    [0x00, 0x9e, 0x73],
-    [0xcc, 0x79, 0xa7],
-    [0xf0, 0xe4, 0x42],
-    [0xd5, 0x5e, 0x00],
-    [0x00, 0x72, 0xb2],
-];
-
-/// The colour of the name of that number: seven, then the same again in two darker shades.
-pub fn category(number: usize) -> [u8; 3] {
-    let shade = [1.0, 0.72, 0.5][number / CATEGORIES.len() % 3];
-    CATEGORIES[number % CATEGORIES.len()].map(|part| (f32::from(part) * shade) as u8)
-}
-
 /// Share of the values below the top of a default range: a few outliers must not flatten the rest.
 const PERCENTILE: f64 = 0.995;
 /// Decades that a default range of flux spans.

@@ -11,13 +11,11 @@ use crate::camera::Camera;
 use crate::colour::Scale;
 use crate::layers::{Layers, MeshColour, NodeColour, Section, Slice, VoxelShow};
 use crate::measure::Measure;
-use crate::outdoors::draw as outdoors;
-use crate::outdoors::sun::{SunDay, SunNow};
+use crate::outdoors::shown as outdoors;
 use crate::paint::{Ball, Batch, Corner, Culling, Cut, Picture, Stroke, Tint, What};
 use crate::results::{Estimate, Faces, Results};
 use crate::state::State;
 use glam::{Vec2, Vec3};
-use lightvein::daylight::Quantity;
 use lightvein::model::Model;
 use lightvein::scene::{Light, Scene};
 use memo::{Later, Memo, Same};
@@ -37,7 +35,6 @@ const NO_BOX: (Vec3, Vec3) = (Vec3::splat(-1.0), Vec3::ONE);
 pub struct Drawer {
     mesh: Memo<(Same<Scene>, Same<Vec<u8>>), mesh::Parts>,
     faces: Memo<Same<Faces>, Arc<Vec<Corner>>>,
-    exposed: Memo<(Same<crate::outdoors::FaceExposure>, Same<Vec<u8>>, Quantity), Arc<Vec<Corner>>>,
     voxels: Later<(Same<Model>, VoxelShow, Option<Slice>), Squares>,
     cells: Later<(Same<Model>, Option<Slice>), Squares>,
     nodes: Memo<(Same<Model>, Same<Estimate>, NodeColour), Arc<Vec<Ball>>>,
@@ -51,7 +48,6 @@ pub struct Drawer {
     hovered: Memo<(Same<Model>, Vec<Light>, Option<crate::state::Picked>), Vec<Batch>>,
     ways: Memo<(Same<Model>, Vec<crate::panels::inspector::WayToLight>, Option<crate::state::Picked>), Vec<Batch>>,
     gizmo: Memo<(Vec3, f32), Batch>,
-    dome: Memo<(SunDay, SunNow, outdoors::Dome), outdoors::Drawn>,
     picture: Option<Arc<Picture>>,
 }
 
@@ -70,14 +66,9 @@ impl Drawer {
     pub fn draw(&mut self, state: &mut State, size_px: Vec2, is_dark: bool, wake: &Wake) -> Drawn {
         let layers = state.layers.clone();
         let mut notes = Vec::new();
-        let mut labels = Vec::new();
-        let mut batches = Vec::new();
-        if layers.sun_path {
-            let drawn = self.sky(state);
-            batches.extend(drawn.batches);
-            labels = drawn.labels;
-        }
-        if layers.mesh {
+        let mut batches = outdoors::batches(state);
+        let labels = outdoors::labels(state);
+        if layers.mesh && !outdoors::draws_faces(state) {
             batches.extend(self.mesh(state, &layers));
         }
         batches.extend(self.voxels(state, &layers, wake, &mut notes));
@@ -103,17 +94,6 @@ impl Drawer {
         self.voxels.is_busy() || self.cells.is_busy()
     }
 
-    fn sky(&mut self, state: &State) -> outdoors::Drawn {
-        let Some(sky) = &state.results.outdoors.sky else { return outdoors::Drawn::default() };
-        let (Ok(day), Ok(now)) =
-            (SunDay::of(sky.outdoors.place, state.outdoors.date), SunNow::of(&sky.outdoors, state.outdoors.moment()))
-        else {
-            return outdoors::Drawn::default();
-        };
-        let dome = outdoors::Dome::about(bounds_m(&state.results), sky.outdoors.north_rad);
-        self.dome.get((day, now, dome), |(day, now, dome)| outdoors::dome(dome, day, now, &sky.year))
-    }
-
     fn mesh(&mut self, state: &mut State, layers: &Layers) -> Vec<Batch> {
         let results = state.results.clone();
         let sides = results.sides.clone();
@@ -122,15 +102,6 @@ impl Drawer {
         {
             let data = self.faces.get(Same(Some(Arc::clone(faces))), |_| mesh::valued(faces));
             return vec![mesh::coloured(data, Tint::Scaled(state.scale(Measure::Irradiance)), layers)];
-        }
-        if layers.mesh_colour == MeshColour::Exposure
-            && let Some(faces) = &results.outdoors.faces
-        {
-            let key = (Same(Some(Arc::clone(faces))), Same(sides.clone()), layers.quantity);
-            let culled = sides.as_ref().filter(|_| layers.cull_near_walls).map(|sides| &sides[..]);
-            let data = self.exposed.get(key, |_| Arc::new(outdoors::corners(faces, layers.quantity, culled)));
-            let tint = Tint::Scaled(state.scale(Measure::of(layers.quantity)));
-            return vec![mesh::coloured(data, tint, layers)];
         }
         let Some(scene) = &results.scene else { return Vec::new() };
         // Sides are those of another mesh while a new one is on its way.

@@ -6,7 +6,7 @@ use crate::layers::NodeColour;
 use crate::measure::shown;
 use crate::paint::{Ball, Corner, Stroke};
 use crate::results::Estimate;
-use crate::colour::category;
+use crate::theme::category;
 use crate::ways::nearest_lights;
 use glam::{Vec2, Vec3};
 use lightvein::model::Model;

@@ -2,7 +2,7 @@
 
 use crate::layers::{Slice, VoxelShow};
 use crate::paint::Cube;
-use crate::colour::category;
+use crate::theme::category;
 use lightvein::model::Model;
 use lightvein::space::VoxelIndex;
 use lightvein::voxel::bits::BitGrid;

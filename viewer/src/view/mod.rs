@@ -5,13 +5,13 @@ mod overlay;
 
 use crate::controls::{self, Gesture, Touch};
 use crate::draw::{Drawer, Wake, bounds_m, longest_m};
-use crate::outdoors;
+use crate::outdoors::shown as outdoors;
 use crate::paint;
 use crate::panels::scene::asked_lights;
 use crate::pick;
 use crate::state::{Picked, State};
 use drag::Drag;
-use egui::{PointerButton, Rect, Response, Sense, Ui, WidgetInfo, WidgetType};
+use egui::{PointerButton, Rect, Response, Sense, Ui, Role, WidgetInfo};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -35,7 +35,6 @@ pub struct View {
     drag: Option<Drag>,
     moved: Option<Instant>,
     camera: Option<crate::camera::Camera>,
-    pixels: overlay::Pixels,
     /// The size of the pane at its last frame, pixels.
     pub size_px: Vec2,
 }
@@ -49,7 +48,6 @@ impl View {
             drag: None,
             moved: None,
             camera: None,
-            pixels: overlay::Pixels::default(),
             size_px: Vec2::splat(100.0),
         }
     }
@@ -63,7 +61,7 @@ impl View {
     pub fn show(&mut self, ui: &mut Ui, state: &mut State) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, NAME));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, NAME));
         let pixels_per_point = ui.ctx().pixels_per_point();
         self.size_px = to_glam(rect.size()) * pixels_per_point;
         if self.size_px.min_element() < 1.0 {
@@ -80,7 +78,7 @@ impl View {
         ui.painter().add(paint::callback(rect, 0, Arc::clone(&drawn.picture)));
         self.rest(ui, state);
         let over = overlay::Over { frame: &frame, labels: &drawn.labels, notes: &drawn.notes };
-        overlay::show(ui, state, &over, &mut self.pixels);
+        overlay::show(ui, state, &over);
     }
 
     /// Moves the camera while keys are held.
@@ -243,10 +241,7 @@ pub fn focus_on_picked(state: &mut State, size_px: Vec2) {
 
 /// Fits the view to the scene, and to the sky's dome where that is shown.
 pub fn fit(state: &mut State, size_px: Vec2) {
-    let mut bounds = bounds_m(&state.results);
-    if let (true, Some(sky)) = (state.layers.sun_path, &state.results.outdoors.sky) {
-        bounds = outdoors::draw::Dome::about(bounds, sky.outdoors.north_rad).bounds_m();
-    }
+    let bounds = outdoors::dome_bounds_m(state).unwrap_or_else(|| bounds_m(&state.results));
     state.camera.fit(bounds, size_px.x / size_px.y.max(1.0));
 }
 

@@ -3,12 +3,11 @@
 use super::Frame;
 use crate::draw::marks::position_m;
 use crate::measure::{ratios, shown};
-use crate::outdoors::{self, PixelExposure};
+use crate::outdoors::shown as outdoors;
 use crate::panels::{number, scene::asked_lights};
 use crate::state::{Picked, State};
-use egui::{Align2, Color32, FontId, Pos2, Rect, RichText, TextureHandle, TextureOptions, Ui, vec2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, RichText, Ui, vec2};
 use glam::Vec3;
-use std::sync::Arc;
 
 /// Names of sensors beyond this many would cover the picture.
 const MOST_NAMES: usize = 200;
@@ -23,17 +22,12 @@ pub struct Over<'a> {
     pub notes: &'a [String],
 }
 
-/// The exposure by pixels as a texture.
-#[derive(Default)]
-pub struct Pixels {
-    made: Option<(Arc<PixelExposure>, crate::measure::Measure, crate::colour::Scale, TextureHandle)>,
-}
-
 /// Shows all of it.
-pub fn show(ui: &mut Ui, state: &mut State, over: &Over, pixels: &mut Pixels) {
+pub fn show(ui: &mut Ui, state: &mut State, over: &Over) {
     let painter = ui.painter_at(over.frame.rect);
-    if state.layers.per_pixel {
-        pixels.show(ui, state, over.frame);
+    if let Some(texture) = outdoors::overlay(state, ui.ctx(), over.frame.size_px) {
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        painter.image(texture.id(), over.frame.rect, whole, Color32::WHITE);
     }
     for (at_m, name) in over.labels {
         name_at(&painter, state, over.frame, *at_m, name);
@@ -69,7 +63,7 @@ fn chips(ui: &mut Ui, state: &mut State, over: &Over) {
     if state.layers.cut && state.layers.mesh {
         let why = "The mesh is cut below the ceiling; skeleton and sensors are not. Click to show all.";
         let response = chip(&mut chips, "Cut", Color32::from_rgb(200, 200, 200), why).interact(egui::Sense::click());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, "Cut: show the whole mesh"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Cut: show the whole mesh"));
         if response.clicked() {
             state.layers.cut = false;
         }
@@ -125,7 +119,7 @@ fn outlined(painter: &egui::Painter, at: Pos2, align: Align2, text: &str, size: 
 fn tip(ui: &Ui, state: &State) {
     let Some(hovered) = state.hovered else { return };
     let Some(text) = words(state, hovered) else { return };
-    egui::Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), ui.id().with("tip"), egui::PopupAnchor::Pointer)
+    egui::Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), ui.scope_id().with("tip"), egui::PopupAnchor::Pointer)
         .gap(14.0)
         .show(|ui| ui.label(text));
 }
@@ -155,28 +149,4 @@ pub fn words(state: &State, picked: Picked) -> Option<String> {
         Picked::Light(light) => format!("light {light}\n{} W", number(lights.get(light)?.flux_w())),
         Picked::Part(part) => results.scene.as_ref()?.parts.get(part)?.name.clone(),
     })
-}
-
-impl Pixels {
-    /// The exposure at the pixels of the view, where it is of this view.
-    fn show(&mut self, ui: &Ui, state: &mut State, frame: &Frame) {
-        let Some(found) = state.results.outdoors.pixels.clone() else { return };
-        if outdoors::seen_by(&state.camera, frame.size_px) != Some(found.view) {
-            return;
-        }
-        let measure = crate::measure::Measure::of(state.layers.quantity);
-        let scale = state.scale(measure);
-        let is_made = self.made.as_ref().is_some_and(|(of, of_measure, of_scale, _)| {
-            Arc::ptr_eq(of, &found) && *of_measure == measure && *of_scale == scale
-        });
-        if !is_made {
-            let picture = outdoors::draw::picture(&found, state.layers.quantity, &scale);
-            let texture = ui.ctx().load_texture("exposure", picture, TextureOptions::NEAREST);
-            self.made = Some((found, measure, scale, texture));
-        }
-        if let Some((_, _, _, texture)) = &self.made {
-            let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            ui.painter_at(frame.rect).image(texture.id(), frame.rect, whole, Color32::WHITE);
-        }
-    }
 }
