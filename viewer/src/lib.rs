@@ -7,6 +7,8 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod app;
+pub mod args;
 pub mod camera;
 pub mod colour;
 pub mod controls;
@@ -21,6 +23,7 @@ pub mod panels;
 pub mod pick;
 pub mod request;
 pub mod results;
+pub mod shot;
 pub mod sides;
 pub mod stamp;
 pub mod state;

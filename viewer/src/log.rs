@@ -46,22 +46,30 @@ impl Entry {
 pub struct Log {
     /// The entries, the latest last.
     pub entries: Vec<Entry>,
-    /// How many of the latest have not been shown as toasts yet.
-    pub fresh: usize,
+    /// What has not been shown as a toast yet.
+    fresh: Vec<Entry>,
 }
 
 /// Most entries that are kept.
 const LONGEST: usize = 1000;
 
 impl Log {
-    /// Tells something; the same thing twice in a row is one entry.
+    /// Tells something, also as a toast; the same thing twice in a row is one entry.
     pub fn tell(&mut self, level: Level, about: impl Into<String>, text: impl Into<String>) {
         let entry = Entry { level, about: about.into(), text: text.into(), times: 1 };
-        self.fresh += 1;
+        self.fresh.push(entry.clone());
+        self.keep(entry);
+    }
+
+    /// The same without a toast: for what comes in numbers and can wait.
+    pub fn note(&mut self, level: Level, about: impl Into<String>, text: impl Into<String>) {
+        self.keep(Entry { level, about: about.into(), text: text.into(), times: 1 });
+    }
+
+    fn keep(&mut self, entry: Entry) {
         match self.entries.last_mut() {
             Some(last) if (last.level, &last.about, &last.text) == (entry.level, &entry.about, &entry.text) => {
                 last.times += 1;
-                self.fresh = self.fresh.min(self.entries.len());
             }
             _ => self.entries.push(entry),
         }
@@ -70,10 +78,9 @@ impl Log {
         }
     }
 
-    /// The entries that have not been shown yet.
-    pub fn take_fresh(&mut self) -> &[Entry] {
-        let first = self.entries.len().saturating_sub(std::mem::take(&mut self.fresh));
-        &self.entries[first..]
+    /// What has not been shown as a toast yet.
+    pub fn take_fresh(&mut self) -> Vec<Entry> {
+        std::mem::take(&mut self.fresh)
     }
 
     /// All entries as text, a line each.

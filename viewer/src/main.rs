@@ -1,1 +1,40 @@
-fn main() {}
+//! The program: arguments, then the window or a picture of it.
+
+use anyhow::{Result, anyhow};
+use clap::Parser;
+use eframe::{NativeOptions, Renderer};
+use lightvein_viewer::app::App;
+use lightvein_viewer::args::Args;
+use lightvein_viewer::shot;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    match run(args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(args: Args) -> Result<()> {
+    if let Some(to) = args.screenshot.clone() {
+        return shot::run(&args, &to);
+    }
+    let [wide, high] = args.size.map(|side| side as f32);
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Lightvein")
+        .with_app_id("lightvein")
+        .with_inner_size([wide, high])
+        .with_min_inner_size([640.0, 400.0]);
+    let options = NativeOptions { viewport, renderer: Renderer::Wgpu, ..NativeOptions::default() };
+    let opened = eframe::run_native("lightvein", options, Box::new(move |cc| Ok(Box::new(App::of_window(cc, args)))));
+    opened.map_err(|error| {
+        anyhow!(
+            "no window can be opened: {error}. It needs a display and a Vulkan driver (Debian's mesa-vulkan-drivers has one \
+             in software); `lightvein-viewer SCENE --screenshot FILE` needs no display, and `lightvein analyse SCENE` neither"
+        )
+    })
+}

@@ -58,7 +58,13 @@ pub fn pick(
 }
 
 /// Where the pointer's ray meets the mesh where it is not cut away, metres, and the triangle; `None` where it meets nothing.
-pub fn surface(results: &Results, camera: &Camera, pointer_px: Vec2, size_px: Vec2, hidden: impl Fn(Vec3, usize, Vec3) -> bool) -> Option<(Vec3, usize)> {
+pub fn surface(
+    results: &Results,
+    camera: &Camera,
+    pointer_px: Vec2,
+    size_px: Vec2,
+    hidden: impl Fn(Vec3, usize, Vec3) -> bool,
+) -> Option<(Vec3, usize)> {
     let scene = results.scene.as_ref()?;
     let (origin_m, direction) = camera.ray(pointer_px, size_px);
     let mut nearest: Option<(f32, usize)> = None;
@@ -66,7 +72,9 @@ pub fn surface(results: &Results, camera: &Camera, pointer_px: Vec2, size_px: Ve
     for triangle in 0..scene.mesh.triangles.len() {
         let Some(corners_m) = scene.mesh.corners_m(triangle) else { continue };
         let Some(along_m) = meets(origin_m, direction, corners_m) else { continue };
-        if nearest.is_none_or(|(nearest_m, _)| along_m < nearest_m) && !hidden(origin_m + direction * along_m, triangle, direction) {
+        if nearest.is_none_or(|(nearest_m, _)| along_m < nearest_m)
+            && !hidden(origin_m + direction * along_m, triangle, direction)
+        {
             nearest = Some((along_m, triangle));
         }
     }
@@ -138,7 +146,8 @@ mod tests {
         camera.look_from(crate::camera::Standard::Top);
         let size_px = Vec2::splat(200.0);
         let hit = |hidden: &dyn Fn(Vec3) -> bool| {
-            surface(&results, &camera, size_px / 2.0, size_px, |at_m, _, _| hidden(at_m)).map(|(at_m, triangle)| (at_m.z.round(), triangle))
+            surface(&results, &camera, size_px / 2.0, size_px, |at_m, _, _| hidden(at_m))
+                .map(|(at_m, triangle)| (at_m.z.round(), triangle))
         };
         assert_eq!(hit(&|_| false), Some((1.0, 1)));
         assert_eq!(hit(&|at_m| at_m.z > 0.5), Some((0.0, 0)));

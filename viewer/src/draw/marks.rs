@@ -122,7 +122,8 @@ pub fn picked(results: &Results, lights: &[Light], picked: Picked, shows_ball: b
         && let Some(node) = model.skeleton.graph.node_weight(node)
     {
         let data = Arc::new(vec![Ball { colour: [120, 200, 255, 255], ..ball(node.radius_m) }]);
-        batches.push(Batch { opacity: 0.28, ..Batch::new(What::Balls { data, least_px: 1.0, most_px: f32::INFINITY }) });
+        batches
+            .push(Batch { opacity: 0.28, ..Batch::new(What::Balls { data, least_px: 1.0, most_px: f32::INFINITY }) });
     }
     if let Some(reading) = reading(results, picked) {
         let towards = reading.direction().as_vec3();
@@ -170,7 +171,8 @@ pub fn ways(model: &Model, at_m: Vec3, ways: &[WayToLight]) -> Vec<Stroke> {
 
 fn edges_of_box((low, high): (Vec3, Vec3)) -> Vec<Stroke> {
     let corner = |bits: usize| Vec3::from_array(std::array::from_fn(|axis| [low, high][bits >> axis & 1][axis]));
-    let along = |axis: usize| (0..8).filter(move |bits| bits >> axis & 1 == 0).map(move |bits| (bits, bits | 1 << axis));
+    let along =
+        |axis: usize| (0..8).filter(move |bits| bits >> axis & 1 == 0).map(move |bits| (bits, bits | 1 << axis));
     (0..3).flat_map(along).map(|(from, to)| line(corner(from), corner(to), 2.0, PICKED)).collect()
 }
 
@@ -180,4 +182,3 @@ pub fn gizmo(at_m: Vec3, length_m: f32) -> Vec<Stroke> {
     let axis = |(axis, colour)| Stroke { arrow: true, ..line(at_m, at_m + Vec3::AXES[axis] * length_m, 3.5, colour) };
     colours.into_iter().enumerate().map(axis).collect()
 }
-

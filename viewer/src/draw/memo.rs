@@ -49,7 +49,8 @@ impl<K: PartialEq + Clone + Send + 'static, V: Clone + Send + 'static> Later<K, 
         make: impl FnOnce(&K) -> V + Send + 'static,
         wake: impl FnOnce() + Send + 'static,
     ) -> Option<V> {
-        let done = self.under_way.as_ref().and_then(|(_, slot)| slot.lock().unwrap_or_else(PoisonError::into_inner).take());
+        let done =
+            self.under_way.as_ref().and_then(|(_, slot)| slot.lock().unwrap_or_else(PoisonError::into_inner).take());
         if let Some(value) = done
             && let Some((key, _)) = self.under_way.take()
         {

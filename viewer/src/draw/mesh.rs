@@ -49,7 +49,14 @@ fn colour(material: &Material) -> [u8; 4] {
 pub fn valued(faces: &Faces) -> Arc<Vec<Corner>> {
     let readings = faces.field.readings.iter().map(shown);
     // They face the void by how they were made.
-    Arc::new(faces.faces_m.iter().zip(readings).flat_map(|(face_m, value)| face(*face_m, value, [128, 128, 128, 255], 1)).collect())
+    Arc::new(
+        faces
+            .faces_m
+            .iter()
+            .zip(readings)
+            .flat_map(|(face_m, value)| face(*face_m, value, [128, 128, 128, 255], 1))
+            .collect(),
+    )
 }
 
 /// The corners of one face.
@@ -63,11 +70,7 @@ pub fn batches([opaque, glass]: Parts, layers: &Layers) -> Vec<Batch> {
     let culling = if layers.cull_near_walls { Culling::ToVoid } else { Culling::None };
     let style = if layers.mesh_style == MeshStyle::Wireframe { FaceStyle::Wireframe } else { FaceStyle::Shaded };
     let opacity = if layers.mesh_style == MeshStyle::Transparent { TRANSPARENT } else { 1.0 };
-    let batch = |data, opacity| Batch {
-        cut: true,
-        opacity,
-        ..Batch::new(What::Faces { data, style, culling })
-    };
+    let batch = |data, opacity| Batch { cut: true, opacity, ..Batch::new(What::Faces { data, style, culling }) };
     let glass_opacity = if style == FaceStyle::Wireframe { opacity } else { GLASS.min(opacity) };
     vec![batch(opaque, opacity), batch(glass, glass_opacity)]
 }

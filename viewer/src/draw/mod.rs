@@ -127,14 +127,18 @@ impl Drawer {
         if layers.voxels {
             let key = (Same(Some(Arc::clone(&model))), layers.voxel_show, layers.voxel_slice);
             let make = |(model, show, slice): &(Same<Model>, VoxelShow, Option<Slice>)| {
-                model.0.as_ref().map_or_else(Squares::default, |model| voxels::squares(model, Show::Voxels(*show), *slice))
+                model
+                    .0
+                    .as_ref()
+                    .map_or_else(Squares::default, |model| voxels::squares(model, Show::Voxels(*show), *slice))
             };
             let wake = wake.clone();
             if let Some(made) = self.voxels.get(&key, make, move || wake()) {
                 note(&made);
                 let is_distance = layers.voxel_show == VoxelShow::Distance;
                 let tint = if is_distance { Tint::Scaled(state.scale(Measure::Distance)) } else { Tint::Own };
-                let opacity = if layers.voxel_show == VoxelShow::Void && layers.voxel_slice.is_none() { 0.35 } else { 1.0 };
+                let opacity =
+                    if layers.voxel_show == VoxelShow::Void && layers.voxel_slice.is_none() { 0.35 } else { 1.0 };
                 batches.push(squares(made, tint, opacity));
             }
         }

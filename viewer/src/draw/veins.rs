@@ -34,7 +34,11 @@ pub fn node_radius_m(model: &Model) -> f32 {
     let longest_m = lattice.size.iter().max().map_or(1.0, |voxels| *voxels as f32 * lattice.voxel_m);
     let mut lengths_m: Vec<f32> = model.skeleton.graph.edge_weights().map(|edge| edge.length_m).collect();
     let middle = lengths_m.len() / 2;
-    let median_m = if lengths_m.is_empty() { lattice.voxel_m } else { *lengths_m.select_nth_unstable_by(middle, f32::total_cmp).1 };
+    let median_m = if lengths_m.is_empty() {
+        lattice.voxel_m
+    } else {
+        *lengths_m.select_nth_unstable_by(middle, f32::total_cmp).1
+    };
     (NODE_OF_SCENE * longest_m).min(NODE_OF_EDGE * median_m)
 }
 
@@ -57,7 +61,9 @@ pub fn nodes(model: &Model, estimate: Option<&Estimate>, colour: NodeColour) -> 
         };
         let [r, g, b] = match colour {
             NodeColour::Cell => category(weight.cell as usize),
-            NodeColour::Light => nearest_light.get(node.index()).copied().flatten().map_or(crate::colour::GREY, category),
+            NodeColour::Light => {
+                nearest_light.get(node.index()).copied().flatten().map_or(crate::colour::GREY, category)
+            }
             _ => crate::colour::GREY,
         };
         let size = (weight.radius_m / median_m.max(1e-6)).sqrt().clamp(0.6, 1.8);
@@ -96,7 +102,14 @@ pub fn edges(model: &Model, estimate: Option<&Estimate>, scale: &Scale) -> Vec<S
 }
 
 /// Arrows along the flow: strongest first, none too close to another on the screen.
-pub fn arrows(model: &Model, estimate: &Estimate, order: &[u32], camera: &Camera, size_px: Vec2, colour: [u8; 4]) -> Vec<Stroke> {
+pub fn arrows(
+    model: &Model,
+    estimate: &Estimate,
+    order: &[u32],
+    camera: &Camera,
+    size_px: Vec2,
+    colour: [u8; 4],
+) -> Vec<Stroke> {
     let graph = &model.skeleton.graph;
     let mut taken: HashSet<(i32, i32)> = HashSet::new();
     let mut placed: Vec<Vec2> = Vec::new();

@@ -3,11 +3,11 @@
 use crate::layers::{Slice, VoxelShow};
 use crate::paint::Cube;
 use crate::theme::category;
+use glam::IVec3;
 use lightvein::model::Model;
 use lightvein::space::VoxelIndex;
 use lightvein::voxel::bits::BitGrid;
 use lightvein::voxel::euclid::{Beyond, squared_distances};
-use glam::IVec3;
 use std::sync::Arc;
 
 /// Squares beyond this are left out: a graphics card without memory of its own would stall on more.
@@ -43,10 +43,10 @@ pub fn squares(model: &Model, show: Show, slice: Option<Slice>) -> Squares {
         let axis = axis.min(2);
         (axis, ((share * lattice.size[axis] as f32) as i32).clamp(0, lattice.size[axis] as i32 - 1))
     });
-    let is_shown = |VoxelIndex(at): VoxelIndex| {
-        plane.is_none_or(|(axis, place)| at[axis] == place) && grid.get(VoxelIndex(at))
-    };
-    let distances = (show == Show::Voxels(VoxelShow::Distance)).then(|| squared_distances(&voxels.solid, Beyond::Solid));
+    let is_shown =
+        |VoxelIndex(at): VoxelIndex| plane.is_none_or(|(axis, place)| at[axis] == place) && grid.get(VoxelIndex(at));
+    let distances =
+        (show == Show::Voxels(VoxelShow::Distance)).then(|| squared_distances(&voxels.solid, Beyond::Solid));
     let cell = |voxel| {
         let node = model.skeleton.nearest_node(voxel)?;
         Some(model.skeleton.graph[node].cell)
@@ -68,9 +68,10 @@ pub fn squares(model: &Model, show: Show, slice: Option<Slice>) -> Squares {
                 continue;
             }
             let [x, y, z] = voxel.0.to_array().map(|along| along as usize);
-            let value = distances.as_ref().and_then(|all| all.get(x + wide * (y + deep * z))).map_or(f32::NAN, |squared| {
-                (*squared as f32).sqrt() * lattice.voxel_m
-            });
+            let value = distances
+                .as_ref()
+                .and_then(|all| all.get(x + wide * (y + deep * z)))
+                .map_or(f32::NAN, |squared| (*squared as f32).sqrt() * lattice.voxel_m);
             let [r, g, b] = match show {
                 Show::Voxels(VoxelShow::Solid) => [176, 170, 160],
                 Show::Voxels(_) => [120, 160, 200],

@@ -66,7 +66,8 @@ impl Drag {
             Picked::Part(number) => {
                 let part = state.results.loaded.as_ref()?.parts.get(number)?;
                 let moved = state.request.edits.parts.iter().filter(|(name, _)| *name == part.name);
-                let by_m = moved.filter_map(|(_, edit)| if let Edit::Move(by_m) = edit { Some(*by_m) } else { None }).sum();
+                let by_m =
+                    moved.filter_map(|(_, edit)| if let Edit::Move(by_m) = edit { Some(*by_m) } else { None }).sum();
                 (Held::Part(part.name.clone(), by_m), state.gizmo?.0)
             }
             Picked::Node(_) | Picked::Sensor(_) => return None,

@@ -3,6 +3,8 @@
 mod drag;
 mod overlay;
 
+pub use overlay::words;
+
 use crate::controls::{self, Gesture, Touch};
 use crate::draw::{Drawer, Wake, bounds_m, longest_m};
 use crate::outdoors::shown as outdoors;
@@ -11,7 +13,7 @@ use crate::panels::scene::asked_lights;
 use crate::pick;
 use crate::state::{Picked, State};
 use drag::Drag;
-use egui::{PointerButton, Rect, Response, Sense, Ui, Role, WidgetInfo};
+use egui::{PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -42,14 +44,7 @@ pub struct View {
 impl View {
     /// A view; `wake` asks for a repaint from another thread.
     pub fn new(wake: Wake) -> Self {
-        Self {
-            drawer: Drawer::default(),
-            wake,
-            drag: None,
-            moved: None,
-            camera: None,
-            size_px: Vec2::splat(100.0),
-        }
+        Self { drawer: Drawer::default(), wake, drag: None, moved: None, camera: None, size_px: Vec2::splat(100.0) }
     }
 
     /// Whether a layer is still being made.
@@ -84,7 +79,8 @@ impl View {
     /// Moves the camera while keys are held.
     fn fly(&mut self, ui: &Ui, state: &mut State, response: &Response) {
         let towards = controls::flying(ui.ctx(), state.kept.preset);
-        let is_here = response.contains_pointer() || response.has_focus() || ui.memory(|memory| memory.focused().is_none());
+        let is_here =
+            response.contains_pointer() || response.has_focus() || ui.memory(|memory| memory.focused().is_none());
         if towards == Vec3::ZERO || !is_here {
             return;
         }
@@ -198,7 +194,9 @@ impl Frame {
 
 /// Whether a place on the mesh is cut away or drawn from its other side alone.
 fn is_hidden(state: &State, at_m: Vec3, triangle: usize, direction: Vec3) -> bool {
-    let is_cut = crate::draw::cuts(&state.layers, bounds_m(&state.results)).iter().any(|cut| cut.normal.dot(at_m) > cut.offset_m);
+    let is_cut = crate::draw::cuts(&state.layers, bounds_m(&state.results))
+        .iter()
+        .any(|cut| cut.normal.dot(at_m) > cut.offset_m);
     let (Some(scene), true) = (&state.results.scene, state.layers.cull_near_walls) else { return is_cut };
     let sides = state.results.sides.as_ref().and_then(|sides| sides.get(triangle)).copied().unwrap_or(3);
     let Some([a, b, c]) = scene.mesh.corners_m(triangle) else { return is_cut };

@@ -49,16 +49,30 @@ pub fn show(ui: &mut Ui, state: &mut State, over: &Over) {
 fn chips(ui: &mut Ui, state: &mut State, over: &Over) {
     let at = over.frame.rect.min + vec2(10.0, 10.0);
     let area = Rect::from_min_size(at, vec2(over.frame.rect.width() - 20.0, 26.0));
-    let mut chips = ui.new_child(egui::UiBuilder::new().max_rect(area).layout(egui::Layout::left_to_right(egui::Align::Min)));
+    let mut chips =
+        ui.new_child(egui::UiBuilder::new().max_rect(area).layout(egui::Layout::left_to_right(egui::Align::Min)));
     let chip = |ui: &mut Ui, text: &str, colour: Color32, why: &str| {
         let frame = egui::Frame::new().fill(colour).corner_radius(9).inner_margin(egui::Margin::symmetric(8, 3));
-        frame.show(ui, |ui| ui.label(RichText::new(text).color(Color32::BLACK).small().strong())).response.on_hover_text(why)
+        frame
+            .show(ui, |ui| ui.label(RichText::new(text).color(Color32::BLACK).small().strong()))
+            .response
+            .on_hover_text(why)
     };
     if state.is_stale() {
-        chip(&mut chips, "Stale", Color32::from_rgb(240, 180, 60), "Shown is the result of an older request; the new one is on its way, or was stopped.");
+        chip(
+            &mut chips,
+            "Stale",
+            Color32::from_rgb(240, 180, 60),
+            "Shown is the result of an older request; the new one is on its way, or was stopped.",
+        );
     }
     if state.results.estimate.as_ref().is_some_and(|estimate| estimate.is_first_pass) {
-        chip(&mut chips, "First pass", Color32::from_rgb(150, 200, 240), "A fast first estimate by backward; the method that was asked for follows.");
+        chip(
+            &mut chips,
+            "First pass",
+            Color32::from_rgb(150, 200, 240),
+            "A fast first estimate by backward; the method that was asked for follows.",
+        );
     }
     if state.layers.cut && state.layers.mesh {
         let why = "The mesh is cut below the ceiling; skeleton and sensors are not. Click to show all.";
@@ -107,9 +121,14 @@ fn sensor_names(painter: &egui::Painter, state: &State, frame: &Frame) {
 /// Text that reads on any ground.
 fn outlined(painter: &egui::Painter, at: Pos2, align: Align2, text: &str, size: f32) {
     let is_dark = painter.ctx().global_style().visuals.dark_mode;
-    let (ink, ground) = if is_dark { (Color32::WHITE, Color32::from_black_alpha(200)) } else { (Color32::BLACK, Color32::from_white_alpha(220)) };
+    let (ink, ground) = if is_dark {
+        (Color32::WHITE, Color32::from_black_alpha(200))
+    } else {
+        (Color32::BLACK, Color32::from_white_alpha(220))
+    };
     let font = FontId::proportional(size);
-    for (x, y) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (-0.7, -0.7), (0.7, 0.7), (0.7, -0.7), (-0.7, 0.7)] {
+    for (x, y) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (-0.7, -0.7), (0.7, 0.7), (0.7, -0.7), (-0.7, 0.7)]
+    {
         painter.text(at + vec2(x, y), align, text, font.clone(), ground);
     }
     painter.text(at, align, text, font, ink);

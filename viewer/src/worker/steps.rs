@@ -2,6 +2,7 @@
 
 use super::cache::{Cache, Loaded, Modelled, Shaped};
 use super::watch::available_bytes;
+use crate::outdoors::OutdoorResults;
 use crate::outdoors::compute::{Question, compute};
 use crate::request::{Edits, How, Request, Source};
 use crate::results::{Answer, Estimate, Faces, Failed, Results};
@@ -81,6 +82,8 @@ pub fn answer(
         let outdoors = compute(&question, &before, progress, cancel, &mut each)?;
         results.outdoors = outdoors;
         cache.shown = results.clone();
+    } else {
+        results.outdoors = OutdoorResults::default();
     }
     if let (true, Some(scene), Some(model)) = (request.wants.all_methods, &results.scene, &results.model)
         && request.wants.model
