@@ -124,10 +124,10 @@ pub struct State {
     pub picked: Option<Picked>,
     /// What the pointer is over.
     pub hovered: Option<Picked>,
-    /// The ways from what is picked to each light.
-    pub ways: Vec<crate::panels::inspector::WayToLight>,
     /// Where the arrows stand that what is picked is dragged by, and how long they are, metres; `None` without.
     pub gizmo: Option<(Vec3, f32)>,
+    /// The ways from what is picked to each light.
+    pub ways: Vec<crate::panels::inspector::WayToLight>,
     /// What was told.
     pub log: Log,
     /// What the panels asked for since the last frame.
@@ -154,8 +154,8 @@ impl State {
             camera: Camera::fitted((Vec3::ZERO, Vec3::ONE), 1.0),
             picked: None,
             hovered: None,
-            ways: Vec::new(),
             gizmo: None,
+            ways: Vec::new(),
             log: Log::default(),
             actions: Vec::new(),
             kept,
