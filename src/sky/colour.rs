@@ -127,8 +127,9 @@ pub fn srgb_code(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The tone mapping of a linear colour for a screen, in sRGB's code: luminance Y becomes 1 - exp(-Y / `white`), so that what is as bright
-/// as `white` takes 63%; the colour stays, mixed with grey as far as a screen needs it. Black without light or white.
+/// The tone mapping of a linear colour for a screen, in sRGB's code: luminance Y becomes 1 - exp(-Y / `white`), so that what
+/// is as bright as `white` takes 63%; the colour stays, mixed with grey as far as a screen needs it. Black without light or
+/// white.
 pub fn tone_mapped(rgb: [f64; 3], white: f64) -> [u8; 3] {
     let seen = luminance(rgb);
     if seen <= 0.0 || white <= 0.0 {

@@ -4,7 +4,7 @@ use super::sky::Sky;
 use super::sun::{DOME, SunDay, SunNow, dome_corner};
 use super::{FaceExposure, PixelExposure, values_of};
 use crate::colour::Scale;
-use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, Tint, What};
+use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, What};
 use glam::{DVec3, Vec3};
 use lightvein::daylight::Quantity;
 use lightvein::export::sun_path::{SunPath, above_horizon};
@@ -163,9 +163,12 @@ fn ball(centre_m: Vec3, radius_m: f32, colour: [u8; 4]) -> Ball {
 }
 
 /// The corners of patches with a quantity of their exposures as values; NaN where there is none. `sides` are those of the
-/// mesh's triangles as they were drawn before parts were changed, where these are known.
+/// mesh's triangles, where these are known.
 pub fn corners(faces: &FaceExposure, quantity: Quantity, sides: Option<&[u8]>) -> Vec<Corner> {
     let values = values_of(&faces.exposures, quantity);
+    // Sides are numbered as the file's triangles as long as none of these is hidden.
+    let triangles = faces.scenery.scene.mesh.triangles.len();
+    let sides = sides.filter(|sides| sides.len() == triangles);
     let patches = faces.patches.iter().zip(values);
     patches
         .flat_map(|(patch, value)| {
@@ -176,12 +179,6 @@ pub fn corners(faces: &FaceExposure, quantity: Quantity, sides: Option<&[u8]>) -
             [a, b, c].map(|position_m| Corner { position_m, normal, value, colour: [128, 128, 128, 255], sides })
         })
         .collect()
-}
-
-/// Faces in the colours of a quantity.
-pub fn faces(data: Arc<Vec<Corner>>, scale: Scale, culling: Culling) -> Batch {
-    let what = What::Faces { data, style: FaceStyle::Flat, culling };
-    Batch { tint: Tint::Scaled(scale), cut: true, ..Batch::new(what) }
 }
 
 /// Exposure by pixels as a picture, transparent where nothing is seen: to be laid over the whole view.

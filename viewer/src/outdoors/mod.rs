@@ -19,7 +19,7 @@ use lightvein::daylight::surface::Patch;
 use lightvein::daylight::way::Prepared;
 use lightvein::light::Status;
 use lightvein::scene::Site;
-pub use shown::OutdoorState;
+pub use shown::{OutdoorState, follow_view, seen_by, tick};
 use sky::{Scenery, Sky};
 use std::sync::Arc;
 

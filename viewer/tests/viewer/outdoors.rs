@@ -12,7 +12,8 @@ use lightvein_viewer::camera::Camera;
 use lightvein_viewer::layers::{Layers, MeshColour};
 use lightvein_viewer::measure::Measure;
 use lightvein_viewer::outdoors::compute::{Question, compute};
-use lightvein_viewer::outdoors::{OutdoorRequest, OutdoorResults, shown};
+use lightvein_viewer::outdoors::{OutdoorRequest, OutdoorResults, draw, follow_view, seen_by, shown};
+use lightvein_viewer::paint::{Batch, Culling, FaceStyle, Picture, Tint, What};
 use lightvein_viewer::panels::{map, outdoors};
 use lightvein_viewer::state::{Action, Kept, State};
 use std::path::Path;
@@ -90,7 +91,7 @@ fn a_typed_latitude_is_asked_for_and_one_step_to_undo() {
     let mut harness = panel(state());
     harness.get_by_role_and_label(Role::SpinButton, "Latitude").click();
     harness.run();
-    harness.get_by_role_and_label(Role::TextInput, "Latitude").type_text("-33.5");
+    harness.get_by_role_and_label(Role::SpinButton, "Latitude").type_text("-33.5");
     harness.run();
     harness.key_press(egui::Key::Enter);
     harness.run();
@@ -157,28 +158,28 @@ fn a_quantity_is_chosen_and_shown_on_faces_or_by_pixel() {
     harness.get_by_label("On faces").click();
     harness.run();
     assert!(harness.state().layers.measures().contains(&Measure::SunHours));
-    let faces = shown::batches(harness.state_mut());
-    assert_eq!(faces.len(), 1);
-    assert_eq!(faces, shown::batches(harness.state_mut()), "nothing is made twice");
+    assert_eq!(harness.state().layers.mesh_colour, MeshColour::Exposure);
 
     harness.get_by_label("Pixel by pixel").click();
     harness.run();
     let state = harness.state_mut();
-    assert!(state.layers.per_pixel && shown::batches(state).is_empty());
+    assert!(state.layers.per_pixel && state.layers.mesh_colour == MeshColour::Material);
     let size_px = Vec2::new(40.0, 30.0);
-    shown::follow_view(state, size_px);
+    follow_view(state, size_px);
     let asked = state.request.outdoors.clone().unwrap();
-    assert_eq!(asked.view.unwrap().size, [40, 30]);
-    let ctx = egui::Context::default();
-    assert!(shown::overlay(state, &ctx, size_px).is_none(), "not computed yet");
+    assert_eq!(asked.view, seen_by(&state.camera, size_px));
+    assert_eq!(state.history.can(), [false, false], "looking is no step to undo");
     let scene = state.results.loaded.clone().unwrap();
-    state.results.outdoors = answered(&scene, &OutdoorRequest { on_faces: false, ..asked }, &state.results.outdoors);
-    assert_eq!(shown::overlay(state, &ctx, size_px).unwrap().size(), [40, 30]);
-    // Seen from elsewhere it does not fit any more.
-    state.camera.azimuth_rad += 0.1;
-    assert!(shown::overlay(state, &ctx, size_px).is_none());
+    let found = answered(&scene, &OutdoorRequest { on_faces: false, ..asked }, &state.results.outdoors);
+    let pixels = found.pixels.unwrap();
+    let scale = state.scale(Measure::SunHours);
+    let picture = draw::picture(&pixels, Quantity::SunHours, &scale);
+    assert_eq!((picture.size, Some(pixels.view)), ([40, 30], seen_by(&state.camera, size_px)));
+    assert_eq!(picture.pixels[0], egui::Color32::TRANSPARENT, "nothing but sky in the corner");
+    let seen = picture.pixels.iter().filter(|pixel| **pixel != egui::Color32::TRANSPARENT).count();
+    assert_eq!(seen, pixels.exposures.len());
     state.camera.orthographic = true;
-    shown::follow_view(state, size_px);
+    follow_view(state, size_px);
     assert_eq!(state.request.outdoors.as_ref().unwrap().view, None);
 }
 
@@ -196,27 +197,54 @@ fn a_weather_file_is_asked_for_and_taken() {
     assert_eq!(harness.state().request.outdoors.as_ref().unwrap().site.as_ref().unwrap().weather, None);
 }
 
+/// The dome about the state's scene at its moment.
+fn dome(state: &State) -> (draw::Dome, draw::Drawn) {
+    let sky = state.results.outdoors.sky.as_ref().unwrap();
+    let bounds = state.results.scene.as_ref().unwrap().mesh.bounds_m().unwrap();
+    let dome = draw::Dome::about(bounds, sky.outdoors.north_rad);
+    let (day, now) = (state.outdoors.day.as_ref().unwrap(), state.outdoors.now.as_ref().unwrap());
+    (dome, draw::dome(&dome, day, now, &sky.sun_path))
+}
+
 #[test]
-fn the_dome_has_its_sun_and_its_names_and_is_kept_while_time_stands() {
+fn the_dome_has_its_sun_and_its_names() {
     let mut harness = panel(state());
-    assert!(shown::labels(harness.state_mut()).is_empty());
     harness.get_by_label("Dome").click();
     harness.run();
-    let state = harness.state_mut();
-    let names: Vec<String> = shown::labels(state).into_iter().map(|(_, name)| name).collect();
+    assert!(harness.state().layers.sun_path);
+    let (about, drawn) = dome(harness.state());
+    let names: Vec<&str> = drawn.labels.iter().map(|(_, name)| name.as_str()).collect();
     assert_eq!(names[..4], ["N", "E", "S", "W"]);
-    assert!(names.contains(&"12".to_owned()) && names.last() == Some(&"12:00".to_owned()), "{names:?}");
-    let (low_m, high_m) = shown::dome_bounds_m(state).unwrap();
-    for (at_m, name) in shown::labels(state) {
-        let room_m = 0.1 * (high_m - low_m);
-        assert!(at_m.cmpge(low_m - room_m).all() && at_m.cmple(high_m + room_m).all(), "{name} at {at_m}");
+    assert!(names.contains(&"12") && names.last() == Some(&"12:00"), "{names:?}");
+    for (at_m, name) in &drawn.labels {
+        let away = at_m.distance(about.middle_m) / about.radius_m;
+        assert!((1.0..1.15).contains(&away), "{name} at {at_m}");
     }
-    let drawn = shown::batches(state);
-    assert_eq!(drawn.len(), 3);
-    assert_eq!(drawn, shown::batches(state));
-    state.outdoors.time_h = 15.0;
+    // By noon the sun stands in the south; by north turned to the east it does so in the west.
+    let What::Balls { data, .. } = &drawn.batches[2].what else { panic!("{:?}", drawn.batches[2].what) };
+    let sun_m = data.last().unwrap().centre_m - about.middle_m;
+    assert!(sun_m.y < 0.0 && sun_m.x.abs() < 0.1 * about.radius_m, "{sun_m}");
+    let turned = draw::Dome { north_rad: std::f64::consts::FRAC_PI_2, ..about };
+    assert!(turned.direction(glam::DVec3::NEG_Y).abs_diff_eq(Vec3::NEG_X, 1e-6));
+}
+
+#[test]
+fn the_sun_is_found_again_when_the_shown_moment_changes_and_not_before() {
+    let mut harness = panel(state());
+    let shown = |harness: &Harness<'static, State>| {
+        let outdoors = &harness.state().outdoors;
+        (outdoors.day.clone().unwrap(), outdoors.now.clone().unwrap())
+    };
+    let (day, now) = shown(&harness);
     harness.run();
-    assert_ne!(drawn, shown::batches(harness.state_mut()));
+    assert!(Arc::ptr_eq(&now, &shown(&harness).1));
+    harness.state_mut().outdoors.time_h = 15.0;
+    harness.run();
+    assert!(Arc::ptr_eq(&day, &shown(&harness).0) && shown(&harness).1.sun.azimuth_rad > now.sun.azimuth_rad);
+    harness.state_mut().outdoors.date = jiff::civil::date(2025, 12, 21);
+    harness.run();
+    let (winter, _) = shown(&harness);
+    assert!(winter.events.sunset().unwrap().time() < day.events.sunset().unwrap().time());
 }
 
 #[test]
@@ -251,19 +279,16 @@ fn exposure_is_drawn_where_it_belongs() {
     };
     let mut state = state();
     shown::tick(&mut state, &egui::Context::default());
-    state.layers.mesh_colour = MeshColour::Exposure;
-    let mut drawn = |state: &mut State| {
-        let batches = shown::batches(state);
-        let picture = lightvein_viewer::paint::Picture {
-            camera: state.camera,
-            background: [[0; 3]; 2],
-            cuts: Vec::new(),
-            batches,
-        };
+    let faces = state.results.outdoors.faces.clone().unwrap();
+    let corners = Arc::new(draw::corners(&faces, Quantity::Total, None));
+    let tint = Tint::Scaled(state.scale(Measure::Exposure));
+    let what = What::Faces { data: corners, style: FaceStyle::Flat, culling: Culling::None };
+    let exposed = Batch { tint, ..Batch::new(what) };
+    let mut drawn = |batches: Vec<Batch>| {
+        let picture = Picture { camera: state.camera, background: [[0; 3]; 2], cuts: Vec::new(), batches };
         offscreen.render_picture(&picture, [320, 240]).expect("a picture")
     };
-    state.layers.cull_near_walls = false;
-    let picture = drawn(&mut state);
+    let picture = drawn(vec![exposed.clone()]);
     // The open ground away from the block is what the open gets, the top of its scale: yellow in viridis.
     let (_, high_m) = state.results.scene.as_ref().unwrap().mesh.bounds_m().unwrap();
     let ground_m = Vec3::new(0.45 * high_m.x, -0.9 * high_m.y, 0.0);
@@ -271,8 +296,7 @@ fn exposure_is_drawn_where_it_belongs() {
     let [r, g, b, _] = picture.get_pixel(at.x as u32, at.y as u32).0;
     assert!(r > 150 && g > 180 && b < 120, "{r} {g} {b} at {at}");
     // The dome's far half stands behind it, its near half does not hide it.
-    state.layers.sun_path = true;
-    let with_dome = drawn(&mut state);
+    let with_dome = drawn([vec![exposed], dome(&state).1.batches].concat());
     assert_eq!(with_dome.get_pixel(at.x as u32, at.y as u32).0, [r, g, b, 255]);
     let sky = with_dome.pixels().zip(picture.pixels()).filter(|(with, without)| with != without).count();
     assert!(sky > 2000, "{sky} pixels of sky");

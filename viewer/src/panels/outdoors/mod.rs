@@ -6,7 +6,7 @@ mod time;
 
 pub use place::with_weather;
 
-use super::{choice, gesture, row, rows, scrolled, section, told};
+use super::{choice, gesture, named, row, rows, scrolled, section, told};
 use crate::layers::MeshColour;
 use crate::outdoors::OutdoorRequest;
 use crate::state::State;
@@ -136,7 +136,7 @@ fn patches(ui: &mut Ui, state: &mut State) {
     let speed_m = f64::from(patch_m) * 0.01;
     let drag = DragValue::new(&mut patch_m).range(PATCH_M).speed(speed_m).suffix(" m");
     // Halfway through typing `0.5` stands a `0`.
-    let response = ui.add(drag.max_decimals(3).update_while_editing(false));
+    let response = named(ui.add(drag.max_decimals(3).update_while_editing(false)), "Patches");
     let number = gesture(&response);
     if response.on_hover_text("The longest side of a patch of a face").changed() {
         change_asked(state, number, |asked| asked.patch_m = Some(patch_m));

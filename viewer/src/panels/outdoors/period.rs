@@ -2,7 +2,7 @@
 
 use super::{changed, site};
 use crate::panels::outdoors::time::day_of_year;
-use crate::panels::{row, rows};
+use crate::panels::{named, row, rows};
 use crate::state::{Action, State};
 use egui::{DragValue, Slider, Ui};
 use jiff::civil::Date;
@@ -51,7 +51,8 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         });
         row(ui, "Step", |ui| {
             let mut step_min = now.step_min.unwrap_or(Period::YEAR.step_min);
-            let response = ui.add(DragValue::new(&mut step_min).range(1.0..=1440.0).suffix(" min").max_decimals(0));
+            let drag = DragValue::new(&mut step_min).range(1.0..=1440.0).suffix(" min").max_decimals(0);
+            let response = named(ui.add(drag), "Step");
             changed(state, &response, |site| site.step_min = Some(step_min));
         });
     });

@@ -1,7 +1,7 @@
 //! Where the scene stands, and which way is north.
 
 use super::{change_asked, changed, gesture, site};
-use crate::panels::{row, rows};
+use crate::panels::{named, row, rows};
 use crate::state::State;
 use egui::{Button, DragValue, Ui};
 use std::path::PathBuf;
@@ -15,28 +15,28 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             let of_weather = decided.map(|place| place.latitude_rad.to_degrees());
             let mut latitude_deg = now.latitude_deg.or(of_weather).unwrap_or(0.0);
             let drag = DragValue::new(&mut latitude_deg).range(-90.0..=90.0).speed(0.1).max_decimals(4);
-            let response = ui.add(drag.suffix("° north"));
+            let response = named(ui.add(drag.suffix("° north")), "Latitude");
             changed(state, &response, |site| site.latitude_deg = Some(latitude_deg));
         });
         row(ui, "Longitude", |ui| {
             let of_weather = decided.map(|place| place.longitude_rad.to_degrees());
             let mut longitude_deg = now.longitude_deg.or(of_weather).unwrap_or(0.0);
             let drag = DragValue::new(&mut longitude_deg).range(-180.0..=180.0).speed(0.1).max_decimals(4);
-            let response = ui.add(drag.suffix("° east"));
+            let response = named(ui.add(drag.suffix("° east")), "Longitude");
             changed(state, &response, |site| site.longitude_deg = Some(longitude_deg));
         });
         row(ui, "Zone", |ui| {
             let mut ahead_h = now.utc_offset_h.or(decided.map(|place| place.utc_offset_h)).unwrap_or(0.0);
             let drag = DragValue::new(&mut ahead_h).range(-14.0..=14.0).speed(0.02).max_decimals(2);
             let ahead = |hours: f64, _| format!("{:+}", (hours * 100.0).round() / 100.0);
-            let response = ui.add(drag.prefix("UTC").suffix(" h").custom_formatter(ahead));
+            let response = named(ui.add(drag.prefix("UTC").suffix(" h").custom_formatter(ahead)), "Zone");
             let response = response.on_hover_text("Standard time, without daylight saving");
             changed(state, &response, |site| site.utc_offset_h = Some(ahead_h));
         });
         row(ui, "North", |ui| {
             let mut north_deg = now.north_deg;
             let drag = DragValue::new(&mut north_deg).range(-360.0..=360.0).speed(0.5).max_decimals(1).suffix("°");
-            let response = ui.add(drag).on_hover_text("Direction of true north, clockwise from +Y");
+            let response = named(ui.add(drag), "North").on_hover_text("Direction of true north, clockwise from +Y");
             changed(state, &response, |site| site.north_deg = north_deg);
         });
     });

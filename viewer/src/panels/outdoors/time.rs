@@ -1,6 +1,6 @@
 //! The shown moment: day, time, play, and the sun then. Results are of a period and do not depend on it.
 
-use crate::panels::{row, rows, told};
+use crate::panels::{named, row, rows, told};
 use crate::state::State;
 use egui::{Button, DragValue, Response, Slider, Ui};
 use jiff::civil::{Date, Time};
@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         });
         row(ui, "Speed", |ui| {
             let drag = DragValue::new(&mut shown.hours_a_second).range(HOURS_A_SECOND).speed(0.02);
-            ui.add(drag.max_decimals(2).suffix(" h/s"));
+            named(ui.add(drag.max_decimals(2).suffix(" h/s")), "Speed");
         });
     });
     ui.horizontal(|ui| {
@@ -51,7 +51,7 @@ pub fn day_of_year(ui: &mut Ui, date: &mut Date) -> Response {
     let name = move |number: f64, _: std::ops::RangeInclusive<usize>| {
         on_day(year, number as i16).map_or_else(String::new, |date| date.strftime("%-d %b").to_string())
     };
-    let parse = move |text: &str| Some(f64::from(named(text, year)?.day_of_year()));
+    let parse = move |text: &str| Some(f64::from(day_named(text, year)?.day_of_year()));
     let slider = Slider::new(&mut number, 1..=date.days_in_year()).custom_formatter(name).custom_parser(parse);
     let response = ui.add(slider);
     *date = on_day(year, number).unwrap_or(*date);
@@ -63,7 +63,7 @@ fn on_day(year: i16, number: i16) -> Option<Date> {
 }
 
 /// A day as it is typed: 21 Jun, or 06-21.
-fn named(text: &str, year: i16) -> Option<Date> {
+fn day_named(text: &str, year: i16) -> Option<Date> {
     let text = text.trim();
     let by_name = Date::strptime("%d %b %Y", format!("{text} {year}"));
     by_name.or_else(|_| Date::strptime("%m-%d %Y", format!("{text} {year}"))).ok()
@@ -88,10 +88,10 @@ mod tests {
 
     #[test]
     fn days_and_times_are_read_as_they_are_written() {
-        assert_eq!(named("21 Jun", 2025), Some(date(2025, 6, 21)));
-        assert_eq!(named("06-21", 2025), Some(date(2025, 6, 21)));
-        assert_eq!(named("29 Feb", 2025), None);
-        assert_eq!(named("29 Feb", 2024), Some(date(2024, 2, 29)));
+        assert_eq!(day_named("21 Jun", 2025), Some(date(2025, 6, 21)));
+        assert_eq!(day_named("06-21", 2025), Some(date(2025, 6, 21)));
+        assert_eq!(day_named("29 Feb", 2025), None);
+        assert_eq!(day_named("29 Feb", 2024), Some(date(2024, 2, 29)));
         assert_eq!(on_day(2025, 365), Some(date(2025, 12, 31)));
         assert_eq!(clock(13.5), "13:30");
         assert_eq!((hours("13:30"), hours(" 7"), hours("25:00")), (Some(13.5), Some(7.0), None));
