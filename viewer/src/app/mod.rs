@@ -311,9 +311,7 @@ impl App {
 
     /// Files dropped on the window.
     fn dropped(&mut self, ctx: &egui::Context) {
-        let dropped = ctx.input(|input| {
-            input.raw.dropped_files.first().map(|file| file.path().to_path_buf())
-        });
+        let dropped = ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
         if let Some(path) = dropped {
             self.open(Source::File(path));
         }

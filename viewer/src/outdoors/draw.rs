@@ -4,7 +4,7 @@ use super::sky::Sky;
 use super::sun::{DOME, SunDay, SunNow, dome_corner};
 use super::{FaceExposure, PixelExposure, values_of};
 use crate::colour::Scale;
-use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, What};
+use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, Tint, What};
 use glam::{DVec3, Vec3};
 use lightvein::daylight::Quantity;
 use lightvein::export::sun_path::{SunPath, above_horizon};
@@ -179,6 +179,12 @@ pub fn corners(faces: &FaceExposure, quantity: Quantity, sides: Option<&[u8]>) -
             [a, b, c].map(|position_m| Corner { position_m, normal, value, colour: [128, 128, 128, 255], sides })
         })
         .collect()
+}
+
+/// Faces in the colours of a quantity.
+pub fn faces(data: Arc<Vec<Corner>>, scale: Scale, culling: Culling) -> Batch {
+    let what = What::Faces { data, style: FaceStyle::Flat, culling };
+    Batch { tint: Tint::Scaled(scale), cut: true, ..Batch::new(what) }
 }
 
 /// Exposure by pixels as a picture, transparent where nothing is seen: to be laid over the whole view.

@@ -1,16 +1,19 @@
-//! What of sun and sky is on the screen: the shown moment, and what was made of it and of the results, each kept until what it
+//! What of sun and sky is on the screen: the shown moment, and what was made of the results for the view, each kept until what it
 //! was made of changes, so that a still picture costs nothing.
 
-use super::OutdoorRequest;
-use super::draw;
+use super::draw::{self, Dome, Drawn};
 use super::sky::Sky;
 use super::sun::{SunDay, SunNow};
+use super::{FaceExposure, OutdoorRequest, PixelExposure};
 use crate::colour::Scale;
+use crate::layers::MeshColour;
 use crate::measure::Measure;
+use crate::paint::{Batch, Corner, Culling};
 use crate::state::State;
 use egui::{Context, TextureHandle, TextureOptions};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use jiff::civil::{Date, DateTime, date};
+use lightvein::daylight::Quantity;
 use lightvein::daylight::camera::Camera;
 use lightvein::scene::Scene;
 use std::sync::Arc;
@@ -39,11 +42,14 @@ pub struct OutdoorState {
     kept: Kept,
 }
 
-/// What was made, with what it was made of.
+/// What was made for the view, with what it was made of.
 #[derive(Default)]
 struct Kept {
     scene: Option<Arc<Scene>>,
     sky: Option<Arc<Sky>>,
+    dome: Option<((Arc<SunDay>, Arc<SunNow>, Arc<Scene>), Arc<Drawn>)>,
+    corners: Option<((Arc<FaceExposure>, Quantity), Arc<Vec<Corner>>)>,
+    overlay: Option<((Arc<PixelExposure>, Quantity, Scale), TextureHandle)>,
     map: Option<((Arc<Sky>, Scale), TextureHandle)>,
 }
 
@@ -158,6 +164,93 @@ pub fn seen_by(camera: &crate::camera::Camera, size_px: Vec2) -> Option<Camera> 
         fov_rad: f64::from(camera.field_of_view_rad),
         size,
     })
+}
+
+/// What is drawn of sun and sky in the view: exposure on the faces of the mesh, and the dome with the sun's path.
+pub fn batches(state: &mut State) -> Vec<Batch> {
+    let faces = exposed_faces(state);
+    let dome = drawn_dome(state).map(|dome| dome.batches.clone()).unwrap_or_default();
+    faces.into_iter().chain(dome).collect()
+}
+
+/// The names beside what is drawn, and where they stand.
+pub fn labels(state: &mut State) -> Vec<(Vec3, String)> {
+    drawn_dome(state).map(|dome| dome.labels.clone()).unwrap_or_default()
+}
+
+/// Whether the faces of the mesh are drawn by [`batches`], so that nobody else draws them.
+pub fn draws_faces(state: &State) -> bool {
+    let layers = &state.layers;
+    layers.mesh && layers.mesh_colour == MeshColour::Exposure && state.results.outdoors.faces.is_some()
+}
+
+/// The box around the dome, where one is shown: what a view of everything has to hold.
+pub fn dome_bounds_m(state: &State) -> Option<(Vec3, Vec3)> {
+    Some(dome_of(state)?.bounds_m()).filter(|_| state.layers.sun_path)
+}
+
+fn dome_of(state: &State) -> Option<Dome> {
+    let north_rad = state.results.outdoors.sky.as_ref()?.outdoors.north_rad;
+    Some(Dome::about(state.results.loaded.as_ref()?.mesh.bounds_m()?, north_rad))
+}
+
+fn drawn_dome(state: &mut State) -> Option<Arc<Drawn>> {
+    if !state.layers.sun_path {
+        return None;
+    }
+    let shown = &state.outdoors;
+    let key = (shown.day.clone()?, shown.now.clone()?, state.results.loaded.clone()?);
+    if let Some((known, drawn)) = &shown.kept.dome
+        && Arc::ptr_eq(&known.0, &key.0)
+        && Arc::ptr_eq(&known.1, &key.1)
+        && Arc::ptr_eq(&known.2, &key.2)
+    {
+        return Some(Arc::clone(drawn));
+    }
+    let sun_path = Arc::clone(&state.results.outdoors.sky.as_ref()?.sun_path);
+    let drawn = Arc::new(draw::dome(&dome_of(state)?, &key.0, &key.1, &sun_path));
+    state.outdoors.kept.dome = Some((key, Arc::clone(&drawn)));
+    Some(drawn)
+}
+
+fn exposed_faces(state: &mut State) -> Option<Batch> {
+    if !draws_faces(state) {
+        return None;
+    }
+    let quantity = state.layers.quantity;
+    let scale = state.scale(Measure::of(quantity));
+    let faces = Arc::clone(state.results.outdoors.faces.as_ref()?);
+    // Sides are known by triangle as long as none is hidden.
+    let triangles = faces.scenery.scene.mesh.triangles.len();
+    let sides = state.results.sides.clone().filter(|sides| sides.len() == triangles);
+    let corners = match &state.outdoors.kept.corners {
+        Some(((known, of), corners)) if Arc::ptr_eq(known, &faces) && *of == quantity => Arc::clone(corners),
+        _ => Arc::new(draw::corners(&faces, quantity, sides.as_deref().map(Vec::as_slice))),
+    };
+    state.outdoors.kept.corners = Some(((faces, quantity), Arc::clone(&corners)));
+    let culling = if state.layers.cull_near_walls { Culling::ToVoid } else { Culling::None };
+    Some(draw::faces(corners, scale, culling))
+}
+
+/// Exposure by pixels, to be laid over the whole view; `None` while the view is not the one that was asked.
+pub fn overlay(state: &mut State, ctx: &Context, size_px: Vec2) -> Option<TextureHandle> {
+    let pixels = Arc::clone(state.results.outdoors.pixels.as_ref().filter(|_| state.layers.per_pixel)?);
+    let now = seen_by(&state.camera, size_px)?;
+    let is_this_view = Camera { size: now.size, ..pixels.view } == now;
+    if !is_this_view {
+        return None;
+    }
+    let quantity = state.layers.quantity;
+    let scale = state.scale(Measure::of(quantity));
+    if let Some(((known, of, by), texture)) = &state.outdoors.kept.overlay
+        && (Arc::ptr_eq(known, &pixels) && (*of, *by) == (quantity, scale))
+    {
+        return Some(texture.clone());
+    }
+    let picture = draw::picture(&pixels, quantity, &scale);
+    let texture = ctx.load_texture("exposure by pixels", picture, TextureOptions::NEAREST);
+    state.outdoors.kept.overlay = Some(((pixels, quantity, scale), texture.clone()));
+    Some(texture)
 }
 
 /// The exposure map as a picture, the horizon at its foot and north at both sides.
