@@ -34,7 +34,7 @@ pub fn scene() -> Scene {
     mesh.material_of = vec![0; mesh.triangles.len()];
     let parts = names.into_iter().zip(of_part).map(|(name, number)| {
         let first = (TRIANGLES_A_BOX * number) as u32;
-        Part { name, triangles: vec![first..first + TRIANGLES_A_BOX as u32], keeps_for_others: 0 }
+        Part { name, triangles: std::iter::once(first..first + TRIANGLES_A_BOX as u32).collect(), keeps_for_others: 0 }
     });
     let sensor = |id: &str, position_m: Vec3, normal: Option<Vec3>| Sensor { id: id.to_owned(), position_m, normal };
     Scene {

@@ -281,6 +281,11 @@ pub fn touches(preset: Preset) -> impl Iterator<Item = &'static TouchRow> {
     TOUCHES.iter().filter(move |row| row.preset.is_none_or(|of| of == preset))
 }
 
+/// How the first key of a command is written; empty where it has none.
+pub fn shortcut(command: Command, preset: Preset) -> String {
+    keys(preset).find(|row| row.command == command).map_or_else(String::new, |row| row.stroke.name())
+}
+
 /// The commands whose keys were pressed since the last frame, in their order; their events are taken. Keys that are held to
 /// fly are not among them: [`flying`].
 pub fn pressed(ctx: &egui::Context, preset: Preset) -> Vec<Command> {
