@@ -100,7 +100,7 @@ mod tests {
         assert_eq!((model.skeleton.cells.len(), model.skeleton.necks.len()), (2, 1));
         assert!(model.voxels.warnings.is_empty(), "{:?}", model.voxels.warnings);
         assert!(model.probes_at_sensors(&scene).iter().all(|probe| probe.place.is_ok()));
-        let sides = crate::sides::of(&scene.mesh, &model.voxels);
+        let sides = crate::sides::of(&scene.mesh, &crate::sides::Inside::of(&model.voxels, std::iter::empty()));
         let seen = |name: &str| {
             let part = scene.parts.iter().position(|part| part.name == name).unwrap();
             scene.triangles_of(part).filter(|&triangle| sides[triangle] != 0).count()
