@@ -133,10 +133,14 @@ fn progress(ui: &mut Ui, state: &mut State) {
             state.ask(Action::Cancel);
         }
         let text = format!("{name}  {seconds:.1} s");
-        let bar = match share {
-            Some(share) => egui::ProgressBar::new(share).text(text),
-            None => egui::ProgressBar::new(0.0).animate(true).text(text),
-        };
-        ui.add(bar.desired_width(260.0));
+        match share {
+            Some(share) => {
+                ui.add(egui::ProgressBar::new(share).text(text).desired_width(260.0));
+            }
+            None => {
+                ui.label(text);
+                ui.spinner();
+            }
+        }
     });
 }

@@ -293,11 +293,13 @@ pub fn pressed(ctx: &egui::Context, preset: Preset) -> Vec<Command> {
         return Vec::new();
     }
     let is_reached = ctx.egui_wants_keyboard_input();
+    let has_popup = egui::Popup::is_any_open(ctx);
     let mut commands = Vec::new();
     ctx.input_mut(|input| {
         input.events.retain(|event| {
             let &Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
-            if is_reached && key == Key::Space {
+            // Space presses the widget that has the focus, Esc closes an open list.
+            if (is_reached && key == Key::Space) || (has_popup && key == Key::Escape) {
                 return true;
             }
             let row = keys(preset).find(|row| row.stroke.is(key, modifiers));

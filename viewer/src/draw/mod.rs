@@ -29,6 +29,9 @@ use voxels::{Show, Squares};
 const DARK: [[u8; 3]; 2] = [[44, 48, 56], [22, 24, 28]];
 const LIGHT: [[u8; 3]; 2] = [[232, 236, 242], [206, 211, 219]];
 
+/// More sensors than this are drawn smaller, or they would hide what they stand on.
+const MANY_SENSORS: usize = 60;
+
 /// The box of a scene without a mesh.
 const NO_BOX: (Vec3, Vec3) = (Vec3::splat(-1.0), Vec3::ONE);
 
@@ -224,7 +227,8 @@ impl Drawer {
                 let (balls, normals) = marks::sensors(&results, measure, longest_m);
                 (Arc::new(balls), Arc::new(normals))
             });
-            batches.push(Batch { tint, ..Batch::new(What::Balls { data: balls, least_px: 4.0, most_px: 9.0 }) });
+            let least_px = if balls.len() > MANY_SENSORS { 2.5 } else { 4.0 };
+            batches.push(Batch { tint, ..Batch::new(What::Balls { data: balls, least_px, most_px: 9.0 }) });
             batches.push(Batch { tint, ..Batch::new(What::Strokes { data: normals }) });
         }
         if layers.lights {

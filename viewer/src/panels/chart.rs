@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         return super::nothing(ui, state, why);
     }
     ui.label(
-        RichText::new("Down is more accurate, left is faster; the line joins those that no other beats in both.")
+        RichText::new("Error as a factor (root mean square) against the time for all sensors: down is more accurate, left is faster; the line joins those that no other beats in both.")
             .weak(),
     );
 
@@ -49,9 +49,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let front = front(&points);
     let weak = ui.visuals().weak_text_color();
     let strong = ui.visuals().strong_text_color();
-    let mut plot =
-        Plot::new("chart").x_axis_label("time for all sensors").y_axis_label("error, factor (root mean square)");
-    plot = plot
+    let mut plot = Plot::new("chart")
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .show_grid([true, true])
