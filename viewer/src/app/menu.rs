@@ -38,7 +38,8 @@ pub fn show(ui: &mut Ui, state: &mut State, tree: &mut Tree<Pane>) {
 }
 
 fn item(ui: &mut Ui, state: &mut State, name: &str, keys: &str, is_on: bool, action: Action) {
-    if ui.add_enabled(is_on, Button::new(name).shortcut_text(keys)).clicked() {
+    let button = if keys.is_empty() { Button::new(name) } else { Button::new(name).shortcut_text(keys) };
+    if ui.add_enabled(is_on, button).clicked() {
         state.ask(action);
     }
 }

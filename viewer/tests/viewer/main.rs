@@ -1,5 +1,6 @@
 //! The viewer as its user meets it.
 
+mod app;
 mod keys;
 mod legend;
 mod outdoors;
