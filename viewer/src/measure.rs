@@ -1,6 +1,7 @@
 //! What is shown in colours: the quantities, their titles and units, their scales, and where their values come from.
 
 use crate::colour::{self, ColourMap, Scale};
+use crate::outdoors::values_of;
 use crate::results::Results;
 use lightvein::daylight::Quantity;
 use lightvein::light::{Reading, Status};
@@ -60,10 +61,10 @@ impl Measure {
             Self::Radius => "Ball radius",
             Self::Distance => "Distance to matter",
             Self::Ratio => "Estimate / reference",
-            Self::Exposure => "Exposure to sun and sky",
-            Self::Beam => "Exposure to the sun",
-            Self::Sky => "Exposure to the sky",
-            Self::Reflected => "Reflected exposure",
+            Self::Exposure => "Sun and sky",
+            Self::Beam => "Sun",
+            Self::Sky => "Sky",
+            Self::Reflected => "Reflected",
             Self::Svf => "Sky view factor",
             Self::SunHours => "Hours of sun",
             Self::MapRadiance => "Exposure map",
@@ -152,6 +153,22 @@ impl Measure {
                 ratios(results).into_iter().map(|ratio| ratio.map_or(f32::NAN, |ratio| ratio as f32)).collect()
             }
             _ => results.outdoors.values(self),
+        }
+    }
+}
+
+impl Measure {
+    /// Its value at each sensor, NaN where there is none; empty for what sensors do not have.
+    pub fn at_sensors(self, results: &Results) -> Vec<f32> {
+        let readings = || results.estimate.iter().flat_map(|estimate| &estimate.at_sensors.readings);
+        match self {
+            Self::Irradiance => readings().map(shown).collect(),
+            Self::Ratio => self.values(results),
+            _ => {
+                let quantity = Quantity::ALL.into_iter().find(|&quantity| Self::of(quantity) == self);
+                let exposures = results.outdoors.sensors.as_ref().map_or(&[][..], |sensors| &sensors.exposures);
+                quantity.map_or_else(Vec::new, |quantity| values_of(exposures, quantity).collect())
+            }
         }
     }
 }

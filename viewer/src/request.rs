@@ -44,7 +44,7 @@ impl Edits {
 }
 
 /// How the estimate is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct How {
     /// Edge of a voxel, metres; `None` for the file's, or one that the library chooses.
     pub voxel_m: Option<f32>,
@@ -56,12 +56,6 @@ pub struct How {
     pub filter: lightvein::skeleton::Filter,
     /// Seed of all random numbers.
     pub seed: u64,
-}
-
-impl Default for How {
-    fn default() -> Self {
-        Self { voxel_m: None, method: None, quality: None, filter: lightvein::skeleton::Filter::default(), seed: 0 }
-    }
 }
 
 /// All that results depend on.

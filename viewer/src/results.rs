@@ -24,6 +24,8 @@ pub struct Results {
     pub faces: Option<Arc<Faces>>,
     /// All methods, for comparison.
     pub answers: Arc<Vec<Answer>>,
+    /// Every method at every quality, once that was asked for.
+    pub rungs: Arc<Vec<Answer>>,
     /// What sun and sky give.
     pub outdoors: crate::outdoors::OutdoorResults,
     /// The stages of the last run.

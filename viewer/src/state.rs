@@ -53,6 +53,8 @@ pub enum Action {
     Focus,
     /// Save a picture of the window.
     SavePicture,
+    /// Run every method at every quality, for the chart.
+    Measure,
     /// Write the files that `analyse -o` writes.
     Export,
     /// Write the table of sensors.

@@ -34,7 +34,7 @@ pub fn scene() -> Scene {
     mesh.material_of = vec![0; mesh.triangles.len()];
     let parts = names.into_iter().zip(of_part).map(|(name, number)| {
         let first = (TRIANGLES_A_BOX * number) as u32;
-        Part { name, triangles: vec![first..first + TRIANGLES_A_BOX as u32], keeps_for_others: 0 }
+        Part { name, triangles: std::iter::once(first..first + TRIANGLES_A_BOX as u32).collect(), keeps_for_others: 0 }
     });
     let sensor = |id: &str, position_m: Vec3, normal: Option<Vec3>| Sensor { id: id.to_owned(), position_m, normal };
     Scene {
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!((model.skeleton.cells.len(), model.skeleton.necks.len()), (2, 1));
         assert!(model.voxels.warnings.is_empty(), "{:?}", model.voxels.warnings);
         assert!(model.probes_at_sensors(&scene).iter().all(|probe| probe.place.is_ok()));
-        let sides = crate::sides::of(&scene.mesh, &model.voxels);
+        let sides = crate::sides::of(&scene.mesh, &crate::sides::Inside::of(&model.voxels, std::iter::empty()));
         let seen = |name: &str| {
             let part = scene.parts.iter().position(|part| part.name == name).unwrap();
             scene.triangles_of(part).filter(|&triangle| sides[triangle] != 0).count()

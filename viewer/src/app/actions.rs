@@ -68,6 +68,11 @@ impl App {
                         self.state.request = after;
                     }
                 }
+                Action::Measure => {
+                    if let Some(worker) = &self.worker {
+                        worker.ask(Task::Measure(Box::new(self.state.results.clone()), self.state.request.how.seed));
+                    }
+                }
                 Action::Fit => view::fit(&mut self.state, self.view.size_px),
                 Action::Focus => view::focus_on_picked(&mut self.state, self.view.size_px),
                 Action::Refit(measure) => self.state.refit(measure),

@@ -2,7 +2,9 @@
 
 use crate::layers::MeshColour;
 use crate::outdoors::OutdoorRequest;
+use crate::sides::Inside;
 use crate::state::State;
+use crate::worker::stand_m;
 
 /// Share of a storey's height that is left of its walls when the ceiling is cut away.
 const CUT_SHARE: f32 = 0.93;
@@ -27,13 +29,13 @@ pub fn scene(state: &mut State) {
     follow_layers(state);
 }
 
-/// A scene was modelled: one whose void is enclosed begins cut below its ceiling.
+/// A scene was modelled: one that is lived in from inside begins cut below its ceiling.
 pub fn model(state: &mut State) {
-    let Some(model) = &state.results.model else { return };
-    let is_enclosed = !model.voxels.voids.is_empty() && model.voxels.voids.iter().all(|void| !void.leaks);
-    state.layers.cut = is_enclosed;
+    let (Some(scene), Some(model)) = (&state.results.scene, &state.results.model) else { return };
+    let is_indoors = Inside::of(&model.voxels, stand_m(scene)).is_indoors();
+    state.layers.cut = is_indoors;
     state.layers.cut_share = CUT_SHARE;
-    state.layers.cull_near_walls = is_enclosed;
+    state.layers.cull_near_walls = is_indoors;
 }
 
 /// Asks for what the layers show, and for no more; that is no step to undo.

@@ -2,7 +2,7 @@
 
 use super::tiles;
 use crate::camera::Standard;
-use crate::controls::Preset;
+use crate::controls::{Command, Preset, shortcut};
 use crate::panels::Pane;
 use crate::state::{Action, Running, State};
 use egui::{Button, Ui};
@@ -27,7 +27,8 @@ pub fn show(ui: &mut Ui, state: &mut State, tree: &mut Tree<Pane>) {
         ui.menu_button("View", |ui| view(ui, state));
         ui.menu_button("Panes", |ui| panes(ui, tree));
         ui.menu_button("Help", |ui| {
-            if ui.add(Button::new("Keys and mouse").shortcut_text("?")).clicked() {
+            if ui.add(Button::new("Keys and mouse").shortcut_text(shortcut(Command::Help, state.kept.preset))).clicked()
+            {
                 state.shows_help = true;
             }
         });
@@ -37,42 +38,59 @@ pub fn show(ui: &mut Ui, state: &mut State, tree: &mut Tree<Pane>) {
     });
 }
 
-fn item(ui: &mut Ui, state: &mut State, name: &str, keys: &str, is_on: bool, action: Action) {
-    let button = if keys.is_empty() { Button::new(name) } else { Button::new(name).shortcut_text(keys) };
+fn item(ui: &mut Ui, state: &mut State, name: &str, is_on: bool, action: Action) {
+    let keys = command(&action).map(|command| shortcut(command, state.kept.preset));
+    let button = keys.map_or_else(|| Button::new(name), |keys| Button::new(name).shortcut_text(keys));
     if ui.add_enabled(is_on, button).clicked() {
         state.ask(action);
     }
 }
 
+/// The command whose keys do the same.
+fn command(action: &Action) -> Option<Command> {
+    match action {
+        Action::OpenDialog => Some(Command::Open),
+        Action::Reload => Some(Command::Reload),
+        Action::Undo => Some(Command::Undo),
+        Action::Redo => Some(Command::Redo),
+        Action::Fit => Some(Command::Fit),
+        Action::Focus => Some(Command::Focus),
+        Action::SavePicture => Some(Command::SavePicture),
+        Action::Export => Some(Command::Export),
+        Action::Quit => Some(Command::Quit),
+        _ => None,
+    }
+}
+
 fn file(ui: &mut Ui, state: &mut State) {
-    item(ui, state, "Open …", "Ctrl+O", true, Action::OpenDialog);
+    item(ui, state, "Open …", true, Action::OpenDialog);
     ui.menu_button("Open recent", |ui| {
         if state.kept.recent.is_empty() {
             ui.weak("none yet");
         }
         for path in state.kept.recent.clone() {
-            item(ui, state, &path.display().to_string(), "", true, Action::Open(path));
+            item(ui, state, &path.display().to_string(), true, Action::Open(path));
         }
     });
-    item(ui, state, "Reload", "Ctrl+R", true, Action::Reload);
+    item(ui, state, "Reload", true, Action::Reload);
     ui.separator();
     let has_estimate = state.results.estimate.is_some();
-    item(ui, state, "Save picture …", "Ctrl+S", true, Action::SavePicture);
-    item(ui, state, "Export analysis …", "Ctrl+E", has_estimate, Action::Export);
-    item(ui, state, "Save table of sensors …", "", has_estimate, Action::SaveTable);
+    item(ui, state, "Save picture …", true, Action::SavePicture);
+    item(ui, state, "Export analysis …", has_estimate, Action::Export);
+    item(ui, state, "Save table of sensors …", has_estimate, Action::SaveTable);
     ui.separator();
-    item(ui, state, "Quit", "Ctrl+Q", true, Action::Quit);
+    item(ui, state, "Quit", true, Action::Quit);
 }
 
 fn edit(ui: &mut Ui, state: &mut State) {
     let [can_undo, can_redo] = state.history.can();
-    item(ui, state, "Undo", "Ctrl+Z", can_undo, Action::Undo);
-    item(ui, state, "Redo", "Ctrl+Shift+Z", can_redo, Action::Redo);
+    item(ui, state, "Undo", can_undo, Action::Undo);
+    item(ui, state, "Redo", can_redo, Action::Redo);
 }
 
 fn view(ui: &mut Ui, state: &mut State) {
-    item(ui, state, "Fit", "F", true, Action::Fit);
-    item(ui, state, "Look at what is picked", "", state.picked.is_some(), Action::Focus);
+    item(ui, state, "Fit", true, Action::Fit);
+    item(ui, state, "Look at what is picked", state.picked.is_some(), Action::Focus);
     ui.menu_button("Look from", |ui| {
         for standard in DIRECTIONS {
             if ui.button(standard.name()).clicked() {
@@ -116,10 +134,14 @@ fn progress(ui: &mut Ui, state: &mut State) {
             state.ask(Action::Cancel);
         }
         let text = format!("{name}  {seconds:.1} s");
-        let bar = match share {
-            Some(share) => egui::ProgressBar::new(share).text(text),
-            None => egui::ProgressBar::new(0.0).animate(true).text(text),
-        };
-        ui.add(bar.desired_width(260.0));
+        match share {
+            Some(share) => {
+                ui.add(egui::ProgressBar::new(share).text(text).desired_width(260.0));
+            }
+            None => {
+                ui.label(text);
+                ui.spinner();
+            }
+        }
     });
 }

@@ -192,6 +192,15 @@ impl App {
                 Told::Answered(request) => {
                     self.state.answered = Some(*request);
                 }
+                Told::Measured(of, rungs) => {
+                    let is_of_now = match (&of.model, &self.state.results.model) {
+                        (Some(of), Some(now)) => Arc::ptr_eq(of, now),
+                        _ => false,
+                    };
+                    if is_of_now {
+                        self.state.results.rungs = Arc::new(rungs);
+                    }
+                }
                 Told::Written(folder, files) => {
                     self.state.log.tell(Level::Note, "", format!("{files} files written into {}", folder.display()));
                 }
@@ -234,7 +243,15 @@ impl App {
         for warning in results.warnings.iter().filter(|warning| !self.state.results.warnings.contains(warning)) {
             self.state.log.note(Level::Warning, request.source.name(), warning.as_str());
         }
+        let is_same_model = match (&self.state.results.model, &results.model) {
+            (Some(old), Some(new)) => Arc::ptr_eq(old, new),
+            _ => false,
+        };
+        let rungs = std::mem::take(&mut self.state.results.rungs);
         self.state.results = results;
+        if is_same_model {
+            self.state.results.rungs = rungs;
+        }
         self.state.answered = Some(request);
         if is_new_scene {
             (self.state.picked, self.state.hovered) = (None, None);

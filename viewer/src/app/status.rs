@@ -15,8 +15,9 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         if let Some(model) = &results.model {
             let (nodes, edges) = (model.skeleton.graph.node_count(), model.skeleton.graph.edge_count());
             let cells = model.skeleton.cells.len();
+            let voxel_m = number(f64::from(model.voxels.lattice.voxel_m));
             ui.separator();
-            ui.label(format!("voxels {} m, {nodes} nodes, {edges} edges, {cells} cells", model.voxels.lattice.voxel_m));
+            ui.label(format!("voxels {voxel_m} m, {nodes} nodes, {edges} edges, {cells} cells"));
         }
         if let Some(estimate) = &results.estimate {
             ui.separator();

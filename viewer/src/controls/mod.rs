@@ -281,6 +281,11 @@ pub fn touches(preset: Preset) -> impl Iterator<Item = &'static TouchRow> {
     TOUCHES.iter().filter(move |row| row.preset.is_none_or(|of| of == preset))
 }
 
+/// How the first key of a command is written; empty where it has none.
+pub fn shortcut(command: Command, preset: Preset) -> String {
+    keys(preset).find(|row| row.command == command).map_or_else(String::new, |row| row.stroke.name())
+}
+
 /// The commands whose keys were pressed since the last frame, in their order; their events are taken. Keys that are held to
 /// fly are not among them: [`flying`].
 pub fn pressed(ctx: &egui::Context, preset: Preset) -> Vec<Command> {
@@ -288,11 +293,13 @@ pub fn pressed(ctx: &egui::Context, preset: Preset) -> Vec<Command> {
         return Vec::new();
     }
     let is_reached = ctx.egui_wants_keyboard_input();
+    let has_popup = egui::Popup::is_any_open(ctx);
     let mut commands = Vec::new();
     ctx.input_mut(|input| {
         input.events.retain(|event| {
             let &Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
-            if is_reached && key == Key::Space {
+            // Space presses the widget that has the focus, Esc closes an open list.
+            if (is_reached && key == Key::Space) || (has_popup && key == Key::Escape) {
                 return true;
             }
             let row = keys(preset).find(|row| row.stroke.is(key, modifiers));

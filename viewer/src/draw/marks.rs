@@ -3,7 +3,7 @@
 use super::mesh::face;
 use super::veins::line;
 
-use crate::measure::{ratios, shown};
+use crate::measure::Measure;
 use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, What};
 use crate::panels::inspector::WayToLight;
 use crate::results::Results;
@@ -25,22 +25,21 @@ const LAMP: [u8; 4] = [255, 214, 90, 255];
 /// What is picked.
 const PICKED: [u8; 4] = [255, 80, 160, 255];
 
+/// A sensor's radius as a share of the scene's longest side.
+const SENSOR_OF_SCENE: f32 = 0.004;
+
 /// A normal and a direction are drawn so long, as shares of the scene's longest side.
-const NORMAL_OF_SCENE: f32 = 0.02;
+const NORMAL_OF_SCENE: f32 = 0.015;
 const DIRECTION_OF_SCENE: f32 = 0.07;
 
-/// The sensors with their values (or ratios), and a line along the normal of each that has one.
-pub fn sensors(results: &Results, by_ratio: bool, longest_m: f32) -> (Vec<Ball>, Vec<Stroke>) {
+/// The sensors with their values of a measure, and a line along the normal of each that has one.
+pub fn sensors(results: &Results, measure: Measure, longest_m: f32) -> (Vec<Ball>, Vec<Stroke>) {
     let Some(scene) = &results.scene else { return Default::default() };
-    let ratios = if by_ratio { ratios(results) } else { Vec::new() };
-    let readings = results.estimate.as_ref().map_or(&[][..], |estimate| &estimate.at_sensors.readings);
-    let value = |number: usize| match by_ratio {
-        true => ratios.get(number).copied().flatten().map_or(f32::NAN, |ratio| ratio as f32),
-        false => readings.get(number).map_or(f32::NAN, shown),
-    };
+    let values = measure.at_sensors(results);
+    let value = |number: usize| values.get(number).copied().unwrap_or(f32::NAN);
     let balls = scene.sensors.iter().enumerate().map(|(number, sensor)| Ball {
         centre_m: sensor.position_m,
-        radius_m: 0.006 * longest_m,
+        radius_m: SENSOR_OF_SCENE * longest_m,
         value: value(number),
         colour: [128, 128, 128, 255],
     });

@@ -11,10 +11,12 @@ use crate::camera::Camera;
 use crate::colour::Scale;
 use crate::layers::{Layers, MeshColour, NodeColour, Section, Slice, VoxelShow};
 use crate::measure::Measure;
+use crate::outdoors::SensorExposure;
 use crate::outdoors::shown as outdoors;
 use crate::paint::{Ball, Batch, Corner, Culling, Cut, Picture, Stroke, Tint, What};
+use crate::panels::inspector::WayToLight;
 use crate::results::{Estimate, Faces, Results};
-use crate::state::State;
+use crate::state::{Picked, State};
 use glam::{Vec2, Vec3};
 use lightvein::model::Model;
 use lightvein::scene::{Light, Scene};
@@ -27,26 +29,40 @@ use voxels::{Show, Squares};
 const DARK: [[u8; 3]; 2] = [[44, 48, 56], [22, 24, 28]];
 const LIGHT: [[u8; 3]; 2] = [[232, 236, 242], [206, 211, 219]];
 
+/// More sensors than this are drawn smaller, or they would hide what they stand on.
+const MANY_SENSORS: usize = 60;
+
 /// The box of a scene without a mesh.
 const NO_BOX: (Vec3, Vec3) = (Vec3::splat(-1.0), Vec3::ONE);
+
+/// What layers are made of, one after the other the parts that they depend on.
+type OfMesh = (Same<Scene>, Same<Vec<u8>>);
+type OfVoxels = (Same<Model>, VoxelShow, Option<Slice>);
+type OfModel<T> = (Same<Model>, Same<Estimate>, T);
+type OfSensors = (Same<Scene>, Same<Estimate>, Same<SensorExposure>, Measure);
+type Seen = (Camera, [u32; 2], bool);
+type OfMark = (Vec<Light>, Option<Picked>, bool);
+
+/// Balls and strokes of one layer.
+type Marks = (Arc<Vec<Ball>>, Arc<Vec<Stroke>>);
 
 /// Makes pictures.
 #[derive(Default)]
 pub struct Drawer {
-    mesh: Memo<(Same<Scene>, Same<Vec<u8>>), mesh::Parts>,
+    mesh: Memo<OfMesh, mesh::Parts>,
     faces: Memo<Same<Faces>, Arc<Vec<Corner>>>,
-    voxels: Later<(Same<Model>, VoxelShow, Option<Slice>), Squares>,
+    voxels: Later<OfVoxels, Squares>,
     cells: Later<(Same<Model>, Option<Slice>), Squares>,
-    nodes: Memo<(Same<Model>, Same<Estimate>, NodeColour), Arc<Vec<Ball>>>,
-    edges: Memo<(Same<Model>, Same<Estimate>, Scale), Arc<Vec<Stroke>>>,
+    nodes: Memo<OfModel<NodeColour>, Arc<Vec<Ball>>>,
+    edges: Memo<OfModel<Scale>, Arc<Vec<Stroke>>>,
     order: Memo<Same<Estimate>, Arc<Vec<u32>>>,
-    arrows: Memo<(Same<Model>, Same<Estimate>, Camera, [u32; 2], bool), Arc<Vec<Stroke>>>,
+    arrows: Memo<OfModel<Seen>, Arc<Vec<Stroke>>>,
     necks: Memo<Same<Model>, Vec<Batch>>,
-    sensors: Memo<(Same<Scene>, Same<Estimate>, bool), (Arc<Vec<Ball>>, Arc<Vec<Stroke>>)>,
+    sensors: Memo<OfSensors, Marks>,
     lights: Memo<(Vec<Light>, f32), Vec<Batch>>,
-    marks: Memo<(Same<Scene>, Same<Model>, Same<Estimate>, Vec<Light>, Option<crate::state::Picked>, bool), Vec<Batch>>,
-    hovered: Memo<(Same<Model>, Vec<Light>, Option<crate::state::Picked>), Vec<Batch>>,
-    ways: Memo<(Same<Model>, Vec<crate::panels::inspector::WayToLight>, Option<crate::state::Picked>), Vec<Batch>>,
+    picked: Memo<OfModel<OfMark>, Vec<Batch>>,
+    hovered: Memo<OfModel<OfMark>, Vec<Batch>>,
+    ways: Memo<(Same<Model>, Vec<WayToLight>), Vec<Batch>>,
     gizmo: Memo<(Vec3, f32), Batch>,
     picture: Option<Arc<Picture>>,
 }
@@ -126,7 +142,7 @@ impl Drawer {
         };
         if layers.voxels {
             let key = (Same(Some(Arc::clone(&model))), layers.voxel_show, layers.voxel_slice);
-            let make = |(model, show, slice): &(Same<Model>, VoxelShow, Option<Slice>)| {
+            let make = |(model, show, slice): &OfVoxels| {
                 model
                     .0
                     .as_ref()
@@ -180,7 +196,7 @@ impl Drawer {
         if let (true, true, Some(estimate)) = (layers.edges, layers.arrows, &estimate) {
             let order = self.order.get(of_estimate.clone(), |_| Arc::new(veins::by_strength(estimate)));
             let size = size_px.to_array().map(|along| along as u32);
-            let key = (of_model.clone(), of_estimate, state.camera, size, is_dark);
+            let key = (of_model.clone(), of_estimate, (state.camera, size, is_dark));
             let colour = if is_dark { [255, 255, 255, 255] } else { [20, 22, 26, 255] };
             let camera = state.camera;
             let make = |_: &_| Arc::new(veins::arrows(&model, estimate, &order, &camera, size_px, colour));
@@ -203,14 +219,16 @@ impl Drawer {
         let of_model = Same(results.model.clone());
         let mut batches = Vec::new();
         if layers.sensors {
-            let by_ratio = layers.sensor_ratios;
-            let measure = if by_ratio { Measure::Ratio } else { Measure::Irradiance };
+            let measure = layers.sensor_measure();
             let tint = Tint::Scaled(state.scale(measure));
-            let (balls, normals) = self.sensors.get((of_scene.clone(), of_estimate.clone(), by_ratio), |_| {
-                let (balls, normals) = marks::sensors(&results, by_ratio, longest_m);
+            let exposed = Same(results.outdoors.sensors.clone());
+            let key = (of_scene, of_estimate.clone(), exposed, measure);
+            let (balls, normals) = self.sensors.get(key, |_| {
+                let (balls, normals) = marks::sensors(&results, measure, longest_m);
                 (Arc::new(balls), Arc::new(normals))
             });
-            batches.push(Batch { tint, ..Batch::new(What::Balls { data: balls, least_px: 4.5, most_px: 9.0 }) });
+            let least_px = if balls.len() > MANY_SENSORS { 2.5 } else { 4.0 };
+            batches.push(Batch { tint, ..Batch::new(What::Balls { data: balls, least_px, most_px: 9.0 }) });
             batches.push(Batch { tint, ..Batch::new(What::Strokes { data: normals }) });
         }
         if layers.lights {
@@ -219,7 +237,7 @@ impl Drawer {
         if let (true, Some(picked), Some(model)) = (layers.paths, state.picked, &results.model)
             && let Some(at_m) = marks::position_m(&results, &lights, picked)
         {
-            let key = (of_model.clone(), state.ways.clone(), Some(picked));
+            let key = (of_model.clone(), state.ways.clone());
             let make = |_: &_| {
                 let data = Arc::new(marks::ways(model, at_m, &state.ways));
                 vec![Batch { on_top: true, ..Batch::new(What::Strokes { data }) }]
@@ -227,14 +245,14 @@ impl Drawer {
             batches.extend(self.ways.get(key, make));
         }
         if let Some(picked) = state.picked {
-            let key = (of_scene, of_model.clone(), of_estimate, lights.clone(), Some(picked), layers.ball);
+            let key = (of_model.clone(), of_estimate.clone(), (lights.clone(), Some(picked), layers.ball));
             let make = |_: &_| marks::picked(&results, &lights, picked, layers.ball, longest_m);
-            batches.extend(self.marks.get(key, make));
+            batches.extend(self.picked.get(key, make));
         }
         if let Some(hovered) = state.hovered.filter(|hovered| Some(*hovered) != state.picked) {
             let without = Results { estimate: None, ..results.clone() };
             let make = |_: &_| marks::picked(&without, &lights, hovered, false, longest_m);
-            batches.extend(self.hovered.get((of_model, lights.clone(), Some(hovered)), make));
+            batches.extend(self.hovered.get((of_model, of_estimate, (lights.clone(), Some(hovered), false)), make));
         }
         if let Some((at_m, length_m)) = state.gizmo {
             let make = |_: &_| {

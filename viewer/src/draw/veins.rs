@@ -120,9 +120,11 @@ pub fn arrows(
         }
         let edge = petgraph::graph::EdgeIndex::new(edge as usize);
         let Some((a, b)) = graph.edge_endpoints(edge) else { continue };
-        let flux_w = estimate.through_edges_w.get(edge.index()).copied().unwrap_or(0.0);
-        let [from_m, to_m] = if flux_w < 0.0 { [b, a] } else { [a, b] }.map(|node| graph[node].position_m);
-        let middle_m = (from_m + to_m) / 2.0;
+        // Along the net flux itself: a step of a lattice has no direction worth showing.
+        let comes_from =
+            |node: NodeIndex| estimate.at_nodes.readings.get(node.index()).map(|reading| reading.flux_w_m2);
+        let flows = -(comes_from(a).unwrap_or_default() + comes_from(b).unwrap_or_default());
+        let middle_m = (graph[a].position_m + graph[b].position_m) / 2.0;
         let Some((at_px, _)) = camera.project(middle_m, size_px) else { continue };
         if at_px.cmplt(Vec2::ZERO).any() || at_px.cmpgt(size_px).any() {
             continue;
@@ -136,7 +138,7 @@ pub fn arrows(
         }
         taken.insert((square.x, square.y));
         placed.push(at_px);
-        let half_m = (to_m - from_m).normalize_or_zero() * 0.5 * ARROW_PX * camera.metres_per_px(middle_m, size_px);
+        let half_m = flows.normalize_or_zero().as_vec3() * 0.5 * ARROW_PX * camera.metres_per_px(middle_m, size_px);
         arrows.push(Stroke {
             a_m: middle_m - half_m,
             b_m: middle_m + half_m,

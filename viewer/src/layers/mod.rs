@@ -198,6 +198,15 @@ impl Default for Layers {
 }
 
 impl Layers {
+    /// What colours the sensors: their ratio where that is asked for, else what colours the mesh, irradiance by default.
+    pub fn sensor_measure(&self) -> Measure {
+        match self.mesh_colour {
+            _ if self.sensor_ratios => Measure::Ratio,
+            MeshColour::Exposure => Measure::of(self.quantity),
+            MeshColour::Material | MeshColour::Irradiance => Measure::Irradiance,
+        }
+    }
+
     /// The measures whose scales are in use, in the order of their legends.
     pub fn measures(&self) -> Vec<Measure> {
         let exposure = Measure::of(self.quantity);
@@ -208,8 +217,7 @@ impl Layers {
         };
         let nodes = self.node_colour.measure().filter(|_| self.nodes);
         let edges = self.edges.then_some(Measure::Flux);
-        let sensors = if self.sensor_ratios { Measure::Ratio } else { Measure::Irradiance };
-        let sensors = self.sensors.then_some(sensors);
+        let sensors = self.sensors.then(|| self.sensor_measure());
         let voxels = (self.voxels && self.voxel_show == VoxelShow::Distance).then_some(Measure::Distance);
         let mut all: Vec<Measure> = [mesh, nodes, sensors, edges, voxels].into_iter().flatten().collect();
         let mut seen = Vec::new();

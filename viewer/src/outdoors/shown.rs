@@ -42,14 +42,19 @@ pub struct OutdoorState {
     kept: Kept,
 }
 
+/// What each is made of.
+type OfDome = (Arc<SunDay>, Arc<SunNow>, Arc<Scene>);
+type OfCorners = (Arc<FaceExposure>, Quantity);
+type OfOverlay = (Arc<PixelExposure>, Quantity, Scale);
+
 /// What was made for the view, with what it was made of.
 #[derive(Default)]
 struct Kept {
     scene: Option<Arc<Scene>>,
     sky: Option<Arc<Sky>>,
-    dome: Option<((Arc<SunDay>, Arc<SunNow>, Arc<Scene>), Arc<Drawn>)>,
-    corners: Option<((Arc<FaceExposure>, Quantity), Arc<Vec<Corner>>)>,
-    overlay: Option<((Arc<PixelExposure>, Quantity, Scale), TextureHandle)>,
+    dome: Option<(OfDome, Arc<Drawn>)>,
+    corners: Option<(OfCorners, Arc<Vec<Corner>>)>,
+    overlay: Option<(OfOverlay, TextureHandle)>,
     map: Option<((Arc<Sky>, Scale), TextureHandle)>,
 }
 

@@ -53,7 +53,15 @@ impl Offscreen {
     /// # Errors
     /// Where there is none, or it does not open.
     pub fn new() -> Result<Self, NoAdapter> {
-        let wgpu_setup = WgpuSetup::without_display_handle();
+        // OpenGL last: without a display its probe complains on stderr.
+        Self::of(Backends::PRIMARY).or_else(|_| Self::of(Backends::all()))
+    }
+
+    fn of(backends: Backends) -> Result<Self, NoAdapter> {
+        let mut wgpu_setup = WgpuSetup::without_display_handle();
+        if let WgpuSetup::CreateNew(create) = &mut wgpu_setup {
+            create.instance_descriptor.backends = backends;
+        }
         let instance = pollster::block_on(wgpu_setup.new_instance());
         let configuration = WgpuConfiguration { wgpu_setup, ..Default::default() };
         let options = RendererOptions { dithering: false, ..Default::default() };

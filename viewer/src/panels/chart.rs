@@ -4,15 +4,20 @@
 
 use super::inspector::seconds_text;
 use crate::results::Answer;
-use crate::state::State;
+use crate::state::{Action, State};
 use crate::theme;
 use egui::{Align2, Color32, RichText, Ui};
 use egui_plot::{GridInput, GridMark, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points, Text};
 use lightvein::scene::Method;
+use std::sync::Arc;
 
 /// Shows the chart; without a reference it says so.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    let points = points(&state.results.answers);
+    let answers = match state.results.rungs.is_empty() {
+        true => Arc::clone(&state.results.answers),
+        false => Arc::clone(&state.results.rungs),
+    };
+    let points = points(&answers);
     if points.is_empty() {
         let has_reference = state.results.scene.as_ref().is_some_and(|scene| !scene.reference.is_empty());
         let why = match (state.results.answers.is_empty(), has_reference) {
@@ -23,12 +28,18 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         return super::nothing(ui, state, why);
     }
     ui.label(
-        RichText::new("Down is more accurate, left is faster; the line joins those that no other beats in both.")
+        RichText::new("Error as a factor (root mean square) against the time for all sensors: down is more accurate, left is faster; the line joins those that no other beats in both.")
             .weak(),
     );
 
-    key(ui, &points);
-    let off = off_chart(&state.results.answers);
+    ui.horizontal(|ui| {
+        key(ui, &points);
+        let why = "Runs every method at every quality, and the path tracer with a few samples, once";
+        if ui.button("Measure all qualities").on_hover_text(why).clicked() {
+            state.ask(Action::Measure);
+        }
+    });
+    let off = off_chart(&answers);
     if !off.is_empty() {
         ui.label(
             RichText::new(format!("Not on the chart, because they call lit sensors dark: {}", off.join(", "))).weak(),
@@ -38,9 +49,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let front = front(&points);
     let weak = ui.visuals().weak_text_color();
     let strong = ui.visuals().strong_text_color();
-    let mut plot =
-        Plot::new("chart").x_axis_label("time for all sensors").y_axis_label("error, factor (root mean square)");
-    plot = plot
+    let mut plot = Plot::new("chart")
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .show_grid([true, true])

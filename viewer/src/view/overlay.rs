@@ -2,7 +2,7 @@
 
 use super::Frame;
 use crate::draw::marks::position_m;
-use crate::measure::{ratios, shown};
+use crate::measure::{Measure, shown};
 use crate::outdoors::shown as outdoors;
 use crate::panels::{number, scene::asked_lights};
 use crate::state::{Picked, State};
@@ -102,13 +102,13 @@ fn name_at(painter: &egui::Painter, state: &State, frame: &Frame, at_m: Vec3, na
 /// The sensors' names with their values.
 fn sensor_names(painter: &egui::Painter, state: &State, frame: &Frame) {
     let Some(scene) = &state.results.scene else { return };
+    let measure = state.layers.sensor_measure();
+    let values = measure.at_sensors(&state.results);
     let readings = state.results.estimate.as_ref().map_or(&[][..], |estimate| &estimate.at_sensors.readings);
-    let ratios = if state.layers.sensor_ratios { ratios(&state.results) } else { Vec::new() };
     for (place, sensor) in scene.sensors.iter().enumerate().take(MOST_NAMES) {
-        let value = match (state.layers.sensor_ratios, readings.get(place).map(shown)) {
-            (true, _) => ratios.get(place).copied().flatten().map_or_else(|| "no ratio".to_owned(), number),
-            (false, Some(value)) if value.is_finite() => format!("{} W/m²", number(f64::from(value))),
-            (false, _) => readings.get(place).map_or("", |reading| reading.status.name()).replace('_', " "),
+        let value = match values.get(place) {
+            Some(value) if value.is_finite() => format!("{} {}", number(f64::from(*value)), measure.unit()),
+            _ => readings.get(place).map_or("", |reading| reading.status.name()).replace('_', " "),
         };
         let Some((at_px, _)) = state.camera.project(sensor.position_m, frame.size_px) else { continue };
         let at = frame.to_point(at_px) + vec2(9.0, -9.0);
@@ -163,7 +163,14 @@ pub fn words(state: &State, picked: Picked) -> Option<String> {
         }
         Picked::Sensor(sensor) => {
             let reading = estimate.and_then(|estimate| estimate.at_sensors.readings.get(sensor));
-            format!("sensor {}{}", results.scene.as_ref()?.sensors.get(sensor)?.id, value(reading))
+            let exposure = Measure::of(state.layers.quantity);
+            let exposed = exposure
+                .at_sensors(results)
+                .get(sensor)
+                .filter(|value| value.is_finite())
+                .map(|value| format!("\n{}: {} {}", exposure.title(), number(f64::from(*value)), exposure.unit()));
+            let id = &results.scene.as_ref()?.sensors.get(sensor)?.id;
+            format!("sensor {id}{}{}", value(reading), exposed.unwrap_or_default())
         }
         Picked::Light(light) => format!("light {light}\n{} W", number(lights.get(light)?.flux_w())),
         Picked::Part(part) => results.scene.as_ref()?.parts.get(part)?.name.clone(),

@@ -8,10 +8,11 @@ mod cache;
 mod steps;
 mod watch;
 
+pub use steps::stand_m;
 pub use watch::Watch;
 
 use crate::request::Request;
-use crate::results::{Failed, Results};
+use crate::results::{Answer, Failed, Results};
 use crate::state::Running;
 use cache::Cache;
 use lightvein::job::Cancel;
@@ -30,7 +31,7 @@ pub enum Task {
     /// Writes the files of the analysis into a folder.
     Export(PathBuf, Box<Results>),
     /// Measures every method at every quality, for the chart.
-    Measure(Box<Results>),
+    Measure(Box<Results>, u64),
 }
 
 /// What the worker tells.
@@ -39,6 +40,8 @@ pub enum Told {
     Found(Box<Request>, Box<Results>),
     /// The request was answered in full.
     Answered(Box<Request>),
+    /// Every method at every quality, and the results that they belong to.
+    Measured(Box<Results>, Vec<Answer>),
     /// Files were written, into this folder.
     Written(PathBuf, usize),
     /// The task gave nothing, or nothing more.
@@ -172,7 +175,7 @@ impl Shared {
             let (about, of_request) = match &task {
                 Task::Answer(request) => (request.source.name(), true),
                 Task::Export(folder, _) => (folder.display().to_string(), false),
-                Task::Measure(_) => ("chart".to_owned(), false),
+                Task::Measure(..) => ("chart".to_owned(), false),
             };
             let done = catch_unwind(AssertUnwindSafe(|| self.run(task, &mut cache, &cancel, tell, wake)));
             let done = done.unwrap_or_else(|panic| {
@@ -243,7 +246,10 @@ impl Shared {
                 let written = steps::export(&folder, &results, &self.watch, cancel)?;
                 let _ = tell.send(Told::Written(folder, written));
             }
-            Task::Measure(_results) => {}
+            Task::Measure(results, seed) => {
+                let rungs = steps::every_quality(&results, seed, &self.watch, cancel)?;
+                let _ = tell.send(Told::Measured(results, rungs));
+            }
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ use lightvein::export::whole_file;
 use lightvein::flow::network::{self, Quality};
 use lightvein::flow::veins::through_edges_w;
 use lightvein::flow::{Rung, estimator, ladder};
-use lightvein::job::{Cancel, Progress};
+use lightvein::job::{Cancel, Progress, Quiet};
 use lightvein::light::{Field, Settings, Sources};
 use lightvein::model::bare::light_bare_mesh;
 use lightvein::model::choose::choose_voxel_m;
@@ -233,7 +233,7 @@ fn modelled(
     progress.end();
     let sides = match same_void {
         Some(known) => Arc::clone(&known.sides),
-        None => Arc::new(sides::of(&scene.mesh, &voxels)),
+        None => Arc::new(sides::of(&scene.mesh, &sides::Inside::of(&voxels, stand_m(&scene)))),
     };
     let mut model = Model::of(&scene, rays, sources, voxels, skeleton);
     if scene.bare && cache.bare.is_none() {
@@ -252,6 +252,12 @@ fn modelled(
         sides,
     });
     Ok((scene, model))
+}
+
+/// Where lights and sensors stand, metres.
+pub fn stand_m(scene: &Scene) -> impl Iterator<Item = glam::Vec3> {
+    let lights = scene.lights.iter().map(crate::panels::scene::middle_m);
+    lights.chain(scene.sensors.iter().map(|sensor| sensor.position_m))
 }
 
 /// Where lights stand: what voxels depend on.
@@ -332,6 +338,49 @@ fn all_methods(
         Ok(Answer { method, quality, at_sensors, at_nodes, errors, seconds })
     };
     methods.map(answer).collect()
+}
+
+/// Samples a sensor of the path tracer on the chart.
+const TRACED: [u32; 3] = [16, 64, 256];
+
+/// Every method at every quality, and the path tracer with few samples, at the sensors.
+///
+/// # Errors
+/// Results without a model; [`Failed::Cancelled`].
+pub fn every_quality(
+    results: &Results,
+    seed: u64,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<Answer>, Failed> {
+    let (Some(scene), Some(model)) = (&results.scene, &results.model) else {
+        return Err(Failed::Because(anyhow::anyhow!("there is no model to measure methods on yet")));
+    };
+    let probes = model.probes_at_sensors(scene);
+    let settings = Settings { seed, ..Settings::default() };
+    let mut answers = Vec::new();
+    let mut keep = |method, quality, seconds, field: Field| {
+        let errors = errors(&field.readings, &scene.reference);
+        let (at_sensors, at_nodes) = (field.readings, Vec::new());
+        answers.push(Answer { method, quality, at_sensors, at_nodes, errors, seconds });
+    };
+    let rungs: Vec<Rung> = Method::ALL.into_iter().flat_map(ladder).collect();
+    progress.begin("qualities", (rungs.len() + TRACED.len()) as u64);
+    for rung in rungs {
+        let began = Instant::now();
+        let field = (rung.estimate)(model, &probes, &settings, &Quiet, cancel)?;
+        keep(rung.method, rung.quality, began.elapsed().as_secs_f64(), field);
+        progress.advance(1);
+    }
+    for samples in TRACED {
+        let began = Instant::now();
+        let settings = Settings { samples, ..settings };
+        let traced = trace::trace(scene, &model.rays, &model.sources, &settings, &Quiet, cancel)?;
+        keep(Method::Trace, format!("{samples} samples"), began.elapsed().as_secs_f64(), traced.field);
+        progress.advance(1);
+    }
+    progress.end();
+    Ok(answers)
 }
 
 /// What all questions about one model share.

@@ -7,3 +7,5 @@ mod outdoors;
 mod panels;
 mod scene;
 mod sensors;
+mod shot;
+mod snapshots;

@@ -43,6 +43,7 @@ fn answered(request: &Request) -> Results {
                 Told::Found(_, found) => results = *found,
                 Told::Answered(_) => return results,
                 Told::Failed { about, why, .. } => panic!("{about}: {why:?}"),
+                Told::Measured(..) => {}
                 Told::Written(..) => {}
             }
         }

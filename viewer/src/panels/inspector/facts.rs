@@ -67,7 +67,8 @@ fn answer(ui: &mut Ui, reading: &Reading, quantity: &str, reference: Option<Refe
     }
     if let Some(Reference { irradiance_w_m2, stderr_w_m2, .. }) = reference {
         let [value, error] = [irradiance_w_m2, stderr_w_m2].map(number);
-        told(ui, "Reference", format!("{value} W/m², standard error {error}"));
+        told(ui, "Reference", format!("{value} W/m²"));
+        told(ui, "Its standard error", format!("{error} W/m²"));
         if irradiance_w_m2 > 0.0 {
             told(ui, "Estimate / reference", number(reading.value_w_m2 / irradiance_w_m2));
         }

@@ -1,6 +1,9 @@
 //! The table of sensors as plain data: columns, cells, order, text.
 
+use crate::measure::Measure;
+use crate::outdoors::SensorExposure;
 use crate::results::{Answer, Estimate, Results};
+use lightvein::daylight::Quantity;
 use lightvein::light::{Reading, Status};
 use lightvein::scene::Scene;
 use std::cmp::Ordering;
@@ -23,6 +26,8 @@ pub enum Column {
     Ratio,
     /// What the method of that number in the answers says.
     Answer(usize),
+    /// What it receives of sun and sky over the period.
+    Exposure(Quantity),
     /// What became of it.
     Status,
 }
@@ -53,13 +58,15 @@ pub struct Table {
     scene: Arc<Scene>,
     estimate: Option<Arc<Estimate>>,
     answers: Arc<Vec<Answer>>,
+    exposed: Option<Arc<SensorExposure>>,
 }
 
 impl Table {
     /// The table of what was found; `None` before a scene is there.
     pub fn of(results: &Results) -> Option<Self> {
         let scene = results.scene.clone()?;
-        Some(Self { scene, estimate: results.estimate.clone(), answers: results.answers.clone() })
+        let exposed = results.outdoors.sensors.clone();
+        Some(Self { scene, estimate: results.estimate.clone(), answers: results.answers.clone(), exposed })
     }
 
     /// How many sensors there are.
@@ -79,6 +86,13 @@ impl Table {
             columns.extend([Column::Reference, Column::Ratio]);
         }
         columns.extend((0..self.answers.len()).map(Column::Answer));
+        if self.exposed.is_some() {
+            columns.extend([Quantity::Total, Quantity::Svf, Quantity::SunHours].map(Column::Exposure));
+            // Where sun and sky alone were asked the rest would be empty.
+            if self.estimate.is_none() {
+                columns.retain(|column| !matches!(column, Column::Value | Column::Reference | Column::Ratio));
+            }
+        }
         columns.push(Column::Status);
         columns
     }
@@ -93,6 +107,10 @@ impl Table {
             Column::Reference => "Reference".to_owned(),
             Column::Ratio => "Ratio".to_owned(),
             Column::Answer(answer) => self.answers.get(answer).map(Answer::label).unwrap_or_default(),
+            Column::Exposure(quantity) => {
+                let measure = Measure::of(quantity);
+                format!("{} {}", measure.title(), measure.unit()).trim_end().to_owned()
+            }
             Column::Status => "Status".to_owned(),
         }
     }
@@ -110,6 +128,7 @@ impl Table {
             Column::Reference => "the reference, W/m²".to_owned(),
             Column::Ratio => "estimate / reference".to_owned(),
             Column::Answer(_) => format!("irradiance by {}, W/m²", self.heading(column)),
+            Column::Exposure(quantity) => format!("{} over the period", quantity.title()),
             Column::Status => "what became of the sensor".to_owned(),
         }
     }
@@ -124,6 +143,7 @@ impl Table {
             Column::Reference => "reference_w_m2".to_owned(),
             Column::Ratio => "ratio".to_owned(),
             Column::Answer(_) => format!("{}_w_m2", self.heading(column).replace(' ', "_")),
+            Column::Exposure(quantity) => quantity.with_unit().to_owned(),
             Column::Status => "status".to_owned(),
         }
     }
@@ -134,15 +154,19 @@ impl Table {
         match column {
             Column::Number => Cell::Number(sensor as f64),
             Column::Id => self.scene.sensors.get(sensor).map_or(Cell::Missing, |sensor| Cell::Text(sensor.id.clone())),
-            Column::Status => {
-                self.reading(sensor).map_or(Cell::Missing, |reading| Cell::Text(reading.status.name().to_owned()))
-            }
+            Column::Status => self.status(sensor).map_or(Cell::Missing, |status| Cell::Text(status.name().to_owned())),
             _ => number(self.value(column, sensor)),
         }
     }
 
     fn reading(&self, sensor: usize) -> Option<&Reading> {
         self.estimate.as_ref()?.at_sensors.readings.get(sensor)
+    }
+
+    /// What became of a sensor: by the estimate, else under sun and sky.
+    fn status(&self, sensor: usize) -> Option<Status> {
+        let exposed = || Some(self.exposed.as_ref()?.exposures.get(sensor)?.status);
+        self.reading(sensor).map(|reading| reading.status).or_else(exposed)
     }
 
     /// The number in a column, where it has one.
@@ -161,6 +185,10 @@ impl Table {
                 Some(self.reading(sensor).and_then(value)? / reference)
             }
             Column::Answer(answer) => self.answers.get(answer)?.at_sensors.get(sensor).and_then(value),
+            Column::Exposure(quantity) => {
+                let exposure = self.exposed.as_ref()?.exposures.get(sensor)?;
+                matches!(exposure.status, Status::Ok | Status::Dark).then(|| quantity.of(exposure))
+            }
         }
     }
 
@@ -171,7 +199,7 @@ impl Table {
             Column::Id | Column::Status => {
                 let text = |sensor: &u32| match column {
                     Column::Id => self.scene.sensors.get(*sensor as usize).map(|sensor| sensor.id.as_str()),
-                    _ => self.reading(*sensor as usize).map(|reading| reading.status.name()),
+                    _ => self.status(*sensor as usize).map(Status::name),
                 };
                 order.sort_by(|a, b| directed(text(a).cmp(&text(b)), direction));
             }
@@ -271,7 +299,12 @@ mod tests {
             is_first_pass: false,
         };
         let answer = Answer { method, quality, at_sensors: readings, at_nodes: Vec::new(), errors, seconds: 0.0 };
-        Table { scene: Arc::new(scene), estimate: Some(Arc::new(estimate)), answers: Arc::new(vec![answer]) }
+        Table {
+            scene: Arc::new(scene),
+            estimate: Some(Arc::new(estimate)),
+            answers: Arc::new(vec![answer]),
+            exposed: None,
+        }
     }
 
     #[test]

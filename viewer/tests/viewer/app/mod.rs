@@ -25,9 +25,11 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// Voxels that are coarse, so that tests are fast.
 const VOXEL_M: f32 = 0.2;
 
-/// A scene of the repository: `two_rooms` is in `scenes/two_rooms/two_rooms.toml`.
-pub fn scene(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}/{name}.toml"))
+/// A scene of the repository: `outdoor/courtyard` is in `scenes/outdoor/courtyard/courtyard.toml`.
+pub fn scene(of: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(of);
+    let name = folder.file_name().unwrap_or_default().to_os_string();
+    folder.join(name).with_extension("toml")
 }
 
 /// The program as it starts, before anything is computed.
