@@ -2,7 +2,7 @@
 
 use crate::camera::{Camera, Standard};
 use crate::controls::Layer;
-use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, VoxelShow};
+use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Slice, VoxelShow};
 use clap::Parser;
 use glam::{DVec3, Vec3};
 use jiff::civil::{Date, Time};
@@ -94,6 +94,8 @@ pub enum Look {
     Nodes(NodeColour),
     /// Which voxels are shown.
     Voxels(VoxelShow),
+    /// Just the slice of voxels through the middle across that axis: 0, 1, 2 for x, y, z.
+    Slice(usize),
     /// Which quantity of the exposure is shown.
     Exposure(Quantity),
 }
@@ -120,6 +122,7 @@ impl Look {
             Self::Style(style) => (layers.mesh, layers.mesh_style) = (true, style),
             Self::Nodes(colour) => (layers.nodes, layers.node_colour) = (true, colour),
             Self::Voxels(show) => (layers.voxels, layers.voxel_show) = (true, show),
+            Self::Slice(axis) => (layers.voxels, layers.voxel_slice) = (true, Some(Slice { axis, share: 0.5 })),
             Self::Exposure(quantity) => layers.quantity = quantity,
         }
     }
@@ -215,6 +218,9 @@ fn layer(text: &str) -> Result<Look, String> {
         "voxels=solid" => Look::Voxels(VoxelShow::Solid),
         "voxels=void" => Look::Voxels(VoxelShow::Void),
         "voxels=distance" => Look::Voxels(VoxelShow::Distance),
+        "slice=x" => Look::Slice(0),
+        "slice=y" => Look::Slice(1),
+        "slice=z" => Look::Slice(2),
         name => return exposure(name).ok_or_else(|| unknown(text)),
     };
     Ok(look)
@@ -231,7 +237,7 @@ fn unknown(text: &str) -> String {
     format!(
         "{text:?} is no layer; there are {layers}, sun, values, ratios, pixels; mesh=material, irradiance, exposure, shaded, \
          wireframe or transparent; nodes=irradiance, flux, radius, cell or light; voxels=solid, void or distance; \
-         exposure={quantities}"
+         slice=x, y or z; exposure={quantities}"
     )
 }
 

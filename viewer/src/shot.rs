@@ -94,8 +94,8 @@ pub fn arrange(state: &mut State, args: &Args) -> Result<()> {
         state.camera = viewpoint.camera(origin_m, bounds_m, aspect);
     }
     if let Some(what) = &args.pick {
-        state.picked = Some(picked(state, what)?);
-        state.ways = state.picked.map_or_else(Vec::new, |picked| crate::ways::to_lights(&state.results, picked));
+        let picked = picked(state, what)?;
+        state.pick(Some(picked));
     }
     Ok(())
 }

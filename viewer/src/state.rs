@@ -210,6 +210,12 @@ impl State {
         self.kept.maps.get(&measure).copied().unwrap_or_else(|| measure.map())
     }
 
+    /// Picks something, or nothing, and finds its ways to the lights.
+    pub fn pick(&mut self, picked: Option<Picked>) {
+        self.picked = picked;
+        self.ways = picked.map_or_else(Vec::new, |picked| crate::ways::to_lights(&self.results, picked));
+    }
+
     /// Asks the app to do something.
     pub fn ask(&mut self, action: Action) {
         self.actions.push(action);

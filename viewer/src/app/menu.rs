@@ -39,8 +39,9 @@ pub fn show(ui: &mut Ui, state: &mut State, tree: &mut Tree<Pane>) {
 }
 
 fn item(ui: &mut Ui, state: &mut State, name: &str, is_on: bool, action: Action) {
-    let keys = command(&action).map_or_else(String::new, |command| shortcut(command, state.kept.preset));
-    if ui.add_enabled(is_on, Button::new(name).shortcut_text(keys)).clicked() {
+    let keys = command(&action).map(|command| shortcut(command, state.kept.preset));
+    let button = keys.map_or_else(|| Button::new(name), |keys| Button::new(name).shortcut_text(keys));
+    if ui.add_enabled(is_on, button).clicked() {
         state.ask(action);
     }
 }

@@ -5,6 +5,7 @@ mod greet;
 mod menu;
 mod status;
 mod tiles;
+mod toasts;
 
 pub use actions::{Dialog, write_png};
 
@@ -18,16 +19,16 @@ use crate::panels::{self, Pane};
 use crate::request::{Request, Source};
 use crate::results::{Failed, Results};
 use crate::state::{Action, Kept, State};
+use crate::theme;
 use crate::view::{self, View};
 use crate::worker::{Task, Told, Worker};
-use crate::{theme, ways};
 use egui::Ui;
-use egui_notify::Toasts;
 use egui_tiles::Tree;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
+use toasts::Toasts;
 
 /// While a run is under way its progress is looked at this often.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
@@ -93,7 +94,7 @@ impl App {
             worker,
             asked: None,
             tree: start.tree.filter(tiles::is_whole).unwrap_or_else(tiles::first),
-            toasts: Toasts::default().with_anchor(egui_notify::Anchor::BottomRight),
+            toasts: Toasts::default(),
             dialog: None,
             shot: actions::Shot::default(),
             is_fitted: false,
@@ -164,7 +165,7 @@ impl App {
 
         self.act(&ctx);
         self.ask();
-        self.toast(&ctx);
+        self.toasts.show(&ctx, &mut self.state.log);
     }
 
     /// Only the view, for pictures.
@@ -275,9 +276,9 @@ impl App {
         let state = &mut self.state;
         let lights = panels::scene::asked_lights(state).into_owned();
         let is_there = |picked| crate::draw::marks::position_m(&state.results, &lights, picked).is_some();
-        state.picked = state.picked.filter(|&picked| is_there(picked));
+        let picked = state.picked.filter(|&picked| is_there(picked));
         state.hovered = state.hovered.filter(|&hovered| is_there(hovered));
-        state.ways = state.picked.map_or_else(Vec::new, |picked| ways::to_lights(&state.results, picked));
+        state.pick(picked);
     }
 
     /// Asks the worker when the request is another than the one asked last.
@@ -312,7 +313,7 @@ impl App {
                 Command::Play => state.outdoors.is_playing = !state.outdoors.is_playing,
                 Command::Cancel if state.shows_help => state.shows_help = false,
                 Command::Cancel if state.is_busy() => state.ask(Action::Cancel),
-                Command::Cancel => (state.picked, state.ways) = (None, Vec::new()),
+                Command::Cancel => state.pick(None),
                 Command::Help => state.shows_help = !state.shows_help,
                 Command::Open => state.ask(Action::OpenDialog),
                 Command::Reload => state.ask(Action::Reload),
@@ -332,20 +333,6 @@ impl App {
         if let Some(path) = dropped {
             self.open(Source::File(path));
         }
-    }
-
-    /// What was told for the first time, as toasts that go by themselves.
-    fn toast(&mut self, ctx: &egui::Context) {
-        for entry in self.state.log.take_fresh() {
-            let toast = match entry.level {
-                Level::Error => self.toasts.error(entry.line()),
-                Level::Warning => self.toasts.warning(entry.line()),
-                Level::Note => self.toasts.info(entry.line()),
-            };
-            let seconds = if entry.level == Level::Error { 12 } else { 4 };
-            toast.duration(Some(Duration::from_secs(seconds))).closable(true).show_progress_bar(false);
-        }
-        self.toasts.show(ctx);
     }
 }
 

@@ -60,7 +60,7 @@ impl Drag {
         let (what, from_m) = match picked {
             Picked::Light(number) => {
                 let light = *lights.get(number)?;
-                state.picked = Some(picked);
+                state.pick(Some(picked));
                 (Held::Light(number, light), position_m(&state.results, &lights, picked)?)
             }
             Picked::Part(number) => {

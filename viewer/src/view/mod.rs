@@ -136,8 +136,7 @@ impl View {
         if response.double_clicked() && gesture(Touch::DoubleClick(PointerButton::Primary)) == Some(Gesture::Focus) {
             focus_at(state, at_px, frame.size_px);
         } else if response.clicked() && gesture(Touch::Click(PointerButton::Primary)) == Some(Gesture::Pick) {
-            state.picked = picked_at(state, at_px, frame.size_px, true);
-            state.ways = state.picked.map_or_else(Vec::new, |picked| crate::ways::to_lights(&state.results, picked));
+            state.pick(picked_at(state, at_px, frame.size_px, true));
         }
     }
 

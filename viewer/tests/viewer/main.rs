@@ -1,8 +1,11 @@
 //! The viewer as its user meets it.
 
+mod app;
 mod keys;
 mod legend;
 mod outdoors;
 mod panels;
 mod scene;
 mod sensors;
+mod shot;
+mod snapshots;

@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
         let add = ui.button("Add a light").on_hover_text("A point light of 100 W, in the middle of what is looked at");
         if add.clicked() {
             let added = Light::Point { position_m: state.camera.target_m, flux_w: ADDED_FLUX_W };
-            state.picked = Some(Picked::Light(lights.len()));
+            state.pick(Some(Picked::Light(lights.len())));
             let lights = lights.iter().copied().chain([added]).collect();
             state.change(gesture(&add), |request| request.edits.lights = Some(lights));
         }
@@ -62,14 +62,14 @@ fn one(ui: &mut Ui, state: &mut State, scene: &Scene, lights: &[Light], number: 
     ui.horizontal(|ui| {
         let is_picked = state.picked == Some(Picked::Light(number));
         if ui.selectable_label(is_picked, format!("Light {number}: {kind}")).clicked() {
-            state.picked = (!is_picked).then_some(Picked::Light(number));
+            state.pick((!is_picked).then_some(Picked::Light(number)));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let remove = named(ui.small_button("Remove"), &format!("Remove light {number}"));
             if remove.clicked() {
                 let mut left = lights.to_vec();
                 left.remove(number);
-                state.picked = None;
+                state.pick(None);
                 state.change(gesture(&remove), |request| request.edits.lights = Some(left));
             }
         });

@@ -58,7 +58,7 @@ pub fn show(ui: &mut Ui, state: &mut State, scene: &Scene) {
                     changed(state, &shown, &part.name, Done { is_hidden: !is_shown, ..done });
                     let is_picked = state.picked == Some(Picked::Part(number));
                     if ui.selectable_label(is_picked, &part.name).clicked() {
-                        state.picked = (!is_picked).then_some(Picked::Part(number));
+                        state.pick((!is_picked).then_some(Picked::Part(number)));
                     }
                 });
             }

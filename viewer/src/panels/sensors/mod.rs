@@ -109,7 +109,7 @@ fn grid(
         });
     });
     if let Some(sensor) = picked {
-        state.picked = Some(Picked::Sensor(sensor));
+        state.pick(Some(Picked::Sensor(sensor)));
     }
 }
 
