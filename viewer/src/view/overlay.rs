@@ -126,7 +126,7 @@ fn sensor_names(painter: &egui::Painter, state: &State, frame: &Frame) {
 
 /// Text that reads on any ground.
 fn outlined(painter: &egui::Painter, at: Pos2, align: Align2, text: &str, size: f32) {
-    let is_dark = painter.ctx().global_style().visuals.dark_mode;
+    let is_dark = painter.ctx().theme() == egui::Theme::Dark;
     let (ink, ground) = if is_dark {
         (Color32::WHITE, Color32::from_black_alpha(200))
     } else {
