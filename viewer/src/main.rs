@@ -32,8 +32,11 @@ fn run(args: Args) -> Result<()> {
     let options = NativeOptions { viewport, renderer: Renderer::Wgpu, ..NativeOptions::default() };
     let opened = eframe::run_native("lightvein", options, Box::new(move |cc| Ok(Box::new(App::of_window(cc, args)))));
     opened.map_err(|error| {
+        // What stands before the last colon is where in winit's source it failed.
+        let cause = error.to_string();
+        let cause = cause.rsplit(": ").next().unwrap_or_default().trim_end_matches('.');
         anyhow!(
-            "no window can be opened: {error}. It needs a display and a Vulkan driver (Debian's mesa-vulkan-drivers has one \
+            "no window can be opened: {cause}. It needs a display and a Vulkan driver (Debian's mesa-vulkan-drivers has one \
              in software); `lightvein-viewer SCENE --screenshot FILE` needs no display, and `lightvein analyse SCENE` neither"
         )
     })

@@ -8,16 +8,12 @@ use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, What};
 use crate::panels::inspector::WayToLight;
 use crate::results::Results;
 use crate::state::Picked;
+use crate::theme::{BACKWARD, FORWARD};
 use glam::Vec3;
 use lightvein::light::Reading;
 use lightvein::model::Model;
 use lightvein::scene::{Light, Scene};
 use std::sync::Arc;
-
-/// Paths as the heuristics go them: the poster's forward is solid and orange, backward dashed and blue (Okabe and Ito's).
-pub const FORWARD: [u8; 4] = [0xe6, 0x9f, 0x00, 255];
-/// See [`FORWARD`].
-pub const BACKWARD: [u8; 4] = [0x00, 0x72, 0xb2, 255];
 
 /// A lamp's colour.
 const LAMP: [u8; 4] = [255, 214, 90, 255];
@@ -152,7 +148,7 @@ pub fn ways(model: &Model, at_m: Vec3, ways: &[WayToLight]) -> Vec<Stroke> {
         let (Some(way), Some(light)) = (&to_light.way, model.shining.get(to_light.light)) else { continue };
         let veins_m = way.nodes.iter().rev().map(|&node| model.node_m(node));
         let points_m: Vec<Vec3> = std::iter::once(light.position_m).chain(veins_m).chain([at_m]).collect();
-        strokes.extend(points_m.windows(2).map(|pair| line(pair[0], pair[1], 4.0, FORWARD)));
+        strokes.extend(points_m.windows(2).map(|pair| line(pair[0], pair[1], 4.0, opaque(FORWARD))));
 
         let mut seen_m = vec![at_m];
         if way.seen_share > 0.0 {
@@ -162,10 +158,14 @@ pub fn ways(model: &Model, at_m: Vec3, ways: &[WayToLight]) -> Vec<Stroke> {
             seen_m.extend(beyond.map(|&node| model.node_m(node)));
             seen_m.push(light.position_m);
         }
-        let dashed = |pair: &[Vec3]| Stroke { dashed: true, ..line(pair[0], pair[1], 2.5, BACKWARD) };
+        let dashed = |pair: &[Vec3]| Stroke { dashed: true, ..line(pair[0], pair[1], 2.5, opaque(BACKWARD)) };
         strokes.extend(seen_m.windows(2).map(dashed));
     }
     strokes
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
+    [r, g, b, 255]
 }
 
 fn edges_of_box((low, high): (Vec3, Vec3)) -> Vec<Stroke> {

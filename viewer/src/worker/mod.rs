@@ -4,6 +4,7 @@
 //! a slider is dragged the run under way gets on to its first answer, or for a quarter of a second, and gives way then, so that
 //! the view follows the hand and does not starve.
 
+mod asking;
 mod cache;
 mod steps;
 mod watch;
@@ -247,7 +248,7 @@ impl Shared {
                 let _ = tell.send(Told::Written(folder, written));
             }
             Task::Measure(results, seed) => {
-                let rungs = steps::every_quality(&results, seed, &self.watch, cancel)?;
+                let rungs = asking::every_quality(&results, seed, &self.watch, cancel)?;
                 let _ = tell.send(Told::Measured(results, rungs));
             }
         }
