@@ -1,6 +1,6 @@
 //! How a scene is met: which layers are on, and what is asked of it without being told.
 
-use crate::layers::MeshColour;
+use crate::layers::{MeshColour, Slice, VoxelShow};
 use crate::outdoors::OutdoorRequest;
 use crate::sides::Inside;
 use crate::state::State;
@@ -40,6 +40,10 @@ pub fn model(state: &mut State) {
 
 /// Asks for what the layers show, and for no more; that is no step to undo.
 pub fn follow_layers(state: &mut State) {
+    // Distances have their least value all around: only a slice shows them.
+    if state.layers.voxel_show == VoxelShow::Distance {
+        state.layers.voxel_slice.get_or_insert(Slice { axis: 2, share: 0.5 });
+    }
     let Some(scene) = &state.results.loaded else { return };
     let layers = &state.layers;
     let is_lit = !scene.lights.is_empty()

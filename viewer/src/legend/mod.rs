@@ -23,7 +23,11 @@ const MARGIN: f32 = 10.0;
 /// Most categories that the key lists.
 const LISTED: usize = 7;
 
-/// Draws the legend into the upper right corner of the view, `rect`.
+/// Its height before it was shown once, points.
+const FIRST_HEIGHT: f32 = 150.0;
+
+/// Draws the legend into the lower left corner of the view, `rect`: what is seen from above and from the south-east, as scenes are
+/// at first, leaves that free.
 pub fn show(ui: &mut Ui, state: &mut State, rect: Rect) {
     let measures = state.layers.measures();
     let categories = categories(state);
@@ -33,13 +37,15 @@ pub fn show(ui: &mut Ui, state: &mut State, rect: Rect) {
     }
 
     let width = WIDTH.min(rect.width() - 2.0 * MARGIN - 16.0);
-    let left_top = pos2(rect.right() - width - MARGIN - 16.0, rect.top() + MARGIN);
+    let key = ui.scope_id().with("legend height");
+    let height = ui.data(|data| data.get_temp(key)).unwrap_or(FIRST_HEIGHT);
+    let left_top = pos2(rect.left() + MARGIN, (rect.bottom() - height - MARGIN).max(rect.top() + MARGIN));
     let room = Rect::from_min_max(left_top, rect.max - vec2(MARGIN, MARGIN));
     // It senses the pointer, so that what is clicked on it is not clicked in the view below.
     let builder = UiBuilder::new().max_rect(room).id_salt("legend").sense(Sense::click_and_drag());
     let mut child = ui.new_child(builder);
     let fill = child.visuals().window_fill.gamma_multiply(0.93);
-    egui::Frame::popup(child.style()).fill(fill).shadow(egui::Shadow::NONE).show(&mut child, |ui| {
+    let shown = egui::Frame::popup(child.style()).fill(fill).shadow(egui::Shadow::NONE).show(&mut child, |ui| {
         ui.set_width(width);
         ui.spacing_mut().item_spacing = vec2(6.0, 3.0);
         for measure in &measures {
@@ -58,6 +64,11 @@ pub fn show(ui: &mut Ui, state: &mut State, rect: Rect) {
             });
         }
     });
+    let is_height = shown.response.rect.height();
+    if (is_height - height).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(key, is_height));
+        ui.ctx().request_discard("the legend has another height");
+    }
 }
 
 /// The legend of one measure.

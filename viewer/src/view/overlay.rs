@@ -47,6 +47,12 @@ pub fn show(ui: &mut Ui, state: &mut State, over: &Over) {
 
 /// Chips in the upper left corner: what the picture leaves out, and whether it is of now.
 fn chips(ui: &mut Ui, state: &mut State, over: &Over) {
+    if state.results.scene.is_none() {
+        let text =
+            if state.is_busy() { "opening the scene" } else { "no scene is open: File, Open, or drop a file here" };
+        outlined(&ui.painter_at(over.frame.rect), over.frame.rect.center(), Align2::CENTER_CENTER, text, 16.0);
+        return;
+    }
     let at = over.frame.rect.min + vec2(10.0, 10.0);
     let area = Rect::from_min_size(at, vec2(over.frame.rect.width() - 20.0, 26.0));
     let mut chips =
@@ -120,7 +126,7 @@ fn sensor_names(painter: &egui::Painter, state: &State, frame: &Frame) {
 
 /// Text that reads on any ground.
 fn outlined(painter: &egui::Painter, at: Pos2, align: Align2, text: &str, size: f32) {
-    let is_dark = painter.ctx().global_style().visuals.dark_mode;
+    let is_dark = painter.ctx().theme() == egui::Theme::Dark;
     let (ink, ground) = if is_dark {
         (Color32::WHITE, Color32::from_black_alpha(200))
     } else {

@@ -37,8 +37,12 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             Picked::Part(part) => facts::part(ui, state, part),
         }
         if matches!(picked, Picked::Node(_) | Picked::Sensor(_)) {
-            section(ui, "Methods", true, |ui| methods::show(ui, state, picked));
-            section(ui, "Ways to the lights", true, |ui| ways(ui, state));
+            if state.results.estimate.is_some() {
+                section(ui, "Methods", true, |ui| methods::show(ui, state, picked));
+            }
+            if state.results.model.is_some() {
+                section(ui, "Ways to the lights", true, |ui| ways(ui, state));
+            }
         }
     });
 }

@@ -169,7 +169,10 @@ fn totals(ui: &mut Ui, state: &State) {
     }
     if let Some(pixels) = found.pixels.as_ref().filter(|_| state.layers.per_pixel) {
         let [wide, high] = pixels.buffers.camera.size;
-        told(ui, "Pixels", format!("{wide} x {high}, {}", pixels.way.way.words()));
+        told(ui, "Pixels", format!("{wide} x {high}"));
+        ui.label("");
+        ui.add(egui::Label::new(egui::RichText::new(pixels.way.way.words()).weak()).wrap());
+        ui.end_row();
     }
     if found.seconds > 0.0 {
         told(ui, "Took", format!("{} s", super::number(found.seconds)));

@@ -15,14 +15,14 @@ pub fn show(ui: &mut Ui, state: &mut State) {
             let of_weather = decided.map(|place| place.latitude_rad.to_degrees());
             let mut latitude_deg = now.latitude_deg.or(of_weather).unwrap_or(0.0);
             let drag = DragValue::new(&mut latitude_deg).range(-90.0..=90.0).speed(0.1).max_decimals(4);
-            let response = named(ui.add(drag.suffix("° north")), "Latitude");
+            let response = named(ui.add(drag.suffix("°")), "Latitude");
             changed(state, &response, |site| site.latitude_deg = Some(latitude_deg));
         });
         row(ui, "Longitude", |ui| {
             let of_weather = decided.map(|place| place.longitude_rad.to_degrees());
             let mut longitude_deg = now.longitude_deg.or(of_weather).unwrap_or(0.0);
             let drag = DragValue::new(&mut longitude_deg).range(-180.0..=180.0).speed(0.1).max_decimals(4);
-            let response = named(ui.add(drag.suffix("° east")), "Longitude");
+            let response = named(ui.add(drag.suffix("°")), "Longitude");
             changed(state, &response, |site| site.longitude_deg = Some(longitude_deg));
         });
         row(ui, "Zone", |ui| {
