@@ -44,7 +44,7 @@ pub struct Args {
     pub pick: Option<String>,
 
     /// Edge of a voxel, metres.
-    #[arg(long, value_name = "M", value_parser = positive)]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = positive)]
     pub voxel: Option<f32>,
 
     /// The method of the estimate.
