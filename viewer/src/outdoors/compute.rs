@@ -76,9 +76,10 @@ pub fn compute(
         known => Arc::new(Scenery::of(question.scene, question.edits, known.as_deref())?),
     };
     now.scenery = Some(Arc::clone(&scenery));
-    if !question.asked.on_faces {
-        (now.faces, now.unchanged_faces) = (None, None);
-    }
+    // Faces that nobody looks at now stay, as long as they are of this sky: asking them again takes long.
+    let is_of_sky = |faces: &Arc<FaceExposure>| question.asked.on_faces || Arc::ptr_eq(&faces.sky, &sky);
+    now.faces = now.faces.filter(is_of_sky);
+    now.unchanged_faces = now.unchanged_faces.filter(is_of_sky);
     if question.asked.view.is_none() {
         now.pixels = None;
     }

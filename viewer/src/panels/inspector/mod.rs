@@ -5,7 +5,7 @@ mod methods;
 
 pub use methods::seconds_text;
 
-use super::{scrolled, section};
+use super::section;
 use crate::state::{Picked, State};
 use egui::Ui;
 use lightvein::flow::backward::Way;
@@ -29,7 +29,8 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     let Some(picked) = state.picked else {
         return super::nothing(ui, state, "Click a node, a sensor, a light or a part in the view.");
     };
-    scrolled(ui, "inspector", |ui| {
+    egui::ScrollArea::both().id_salt("inspector").auto_shrink(false).show(ui, |ui| {
+        ui.add_space(4.0);
         match picked {
             Picked::Node(node) => facts::node(ui, state, node),
             Picked::Sensor(sensor) => facts::sensor(ui, state, sensor),
