@@ -141,7 +141,7 @@ impl Model {
     }
 
     /// The model of a scene that these parts of it make. Parts of another model may be shared where what changed in the scene
-    /// does not touch them: flux and reflectance leave voxels and skeleton, a light that moves within the void the skeleton.
+    /// does not touch them: flux leaves voxels and skeleton, reflectance and a light that moves within the void the skeleton.
     pub fn of(
         scene: &Scene,
         rays: Arc<Rays>,

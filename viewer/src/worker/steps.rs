@@ -196,11 +196,13 @@ fn modelled(
     let known =
         cache.modelled.as_ref().filter(|known| known.voxel_m == voxel_m && known.edits.parts == request.edits.parts);
     let sources = Sources::of(&scene);
-    let lights_stay = known.is_some_and(|known| positions(&known.scene) == positions(&scene));
+    // Voxels hold where lights stand and what each reflects of the mesh; flux alone leaves them.
+    let stays =
+        |known: &&Modelled| positions(&known.scene) == positions(&scene) && known.scene.materials == scene.materials;
     progress.begin("voxels", 0);
-    let voxels = match known {
-        Some(known) if lights_stay => Arc::clone(&known.model.voxels),
-        _ => {
+    let voxels = match known.filter(stays) {
+        Some(known) => Arc::clone(&known.model.voxels),
+        None => {
             let patches = places_of_patches(&scene, &sources);
             let voxels = voxelise(&scene, &rays, &patches, voxel_m, most_bytes, progress, cancel);
             Arc::new(voxels.map_err(lightvein::model::ModelError::from)?)

@@ -9,3 +9,4 @@ mod scene;
 mod sensors;
 mod shot;
 mod snapshots;
+mod worker;
