@@ -1,6 +1,7 @@
 //! The whole program, by mouse and keys as its user has them; only its window is missing.
 
 mod open;
+mod picture;
 mod run;
 mod touch;
 
