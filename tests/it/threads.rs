@@ -1,6 +1,7 @@
 //! Any number of threads gives the same bits: voxels, skeleton and fields of whole scenes.
 
 use super::modelled::{model, scene};
+use lightvein::flow::network::{self, Quality};
 use lightvein::flow::{estimator, ladder};
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::{Field, Settings};
@@ -60,4 +61,19 @@ fn same_bits(a: &[Field], b: &[Field]) -> bool {
             .collect()
     };
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
+}
+
+/// A network that is asked once at both kinds of probes answers as one for each.
+#[test]
+fn a_network_gathered_and_read_is_both_at_once() {
+    let scene = scene("two_rooms");
+    let (model, settings, never) = (model(&scene), Settings::default(), Cancel::new());
+    let (at_sensors, at_nodes) = (model.probes_at_sensors(&scene), model.probes_at_nodes());
+    let quality = Quality::COARSE;
+    let asked = [&at_sensors[..], &at_nodes[..]];
+    let [gathered, read] =
+        network::gathered_and_read(&quality, &model, asked, &settings, &Quiet, &never).expect("nobody stops it");
+    let alone = |quality, probes: &[_]| network::with(quality)(&model, probes, &settings, &Quiet, &never).unwrap();
+    assert_eq!(gathered.readings, alone(quality, &at_sensors).readings);
+    assert_eq!(read.readings, alone(quality.read(), &at_nodes).readings);
 }
