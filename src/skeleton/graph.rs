@@ -114,7 +114,7 @@ impl Skeleton {
     /// Thins a void and cuts its skeleton into cells. `rays` are those of the scene; without a surface in them all sizes
     /// are the voxels'.
     ///
-    /// Stages reported: those of [`thin`], `sections` (sections, radii, nearest nodes) and `cells`.
+    /// Stages reported: those of [`super::thin`], `sections` (sections, radii, nearest nodes) and `cells`.
     /// Time of `sections` on one thread: that of [`Nearest::new`], and 15 us an edge in the gallery, 30 us in a real house.
     ///
     /// # Errors

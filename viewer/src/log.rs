@@ -57,7 +57,9 @@ impl Log {
     /// Tells something, also as a toast; the same thing twice in a row is one entry.
     pub fn tell(&mut self, level: Level, about: impl Into<String>, text: impl Into<String>) {
         let entry = Entry { level, about: about.into(), text: text.into(), times: 1 };
-        self.fresh.push(entry.clone());
+        if self.fresh.last() != Some(&entry) {
+            self.fresh.push(entry.clone());
+        }
         self.keep(entry);
     }
 

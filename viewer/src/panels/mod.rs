@@ -2,7 +2,7 @@
 //!
 //! A panel changes what results depend on through [`State::change`], by the number that [`gesture`] gives: a drag or a typed
 //! number is one step to undo. All else it sets at once. Every widget has a name for screen readers: its own text, or that of
-//! its row ([`row`]).
+//! its row (`row`).
 
 pub mod chart;
 pub mod help;

@@ -11,7 +11,7 @@ fn program() -> Command {
 }
 
 /// Whether pictures can be taken here; says why not, or panics where they must.
-fn can_draw() -> bool {
+pub fn can_draw() -> bool {
     match Offscreen::new() {
         Ok(_) => true,
         Err(error) if std::env::var_os("LIGHTVEIN_NEED_GPU").is_some() => panic!("{error}"),

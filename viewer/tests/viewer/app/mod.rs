@@ -1,6 +1,8 @@
 //! The whole program, by mouse and keys as its user has them; only its window is missing.
 
 mod open;
+mod parts;
+mod picture;
 mod run;
 mod touch;
 

@@ -133,8 +133,8 @@ fn an_arrow_of_the_gizmo_moves_along_its_axis_alone() {
 fn the_mouse_turns_and_zooms_the_camera_and_asks_for_nothing() {
     let mut window = opened("two_rooms");
     let first = window.state().state.camera;
-    let corner = view_rect(&window).left_bottom() + egui::vec2(40.0, -60.0);
-    drag(&mut window, corner, egui::vec2(60.0, 0.0), 3);
+    let corner = view_rect(&window).right_top() + egui::vec2(-40.0, 60.0);
+    drag(&mut window, corner, egui::vec2(-60.0, 0.0), 3);
     window.run();
     let turned = window.state().state.camera;
     assert!(turned.azimuth_rad != first.azimuth_rad && turned.distance_m == first.distance_m);
