@@ -10,6 +10,7 @@ mod toasts;
 pub use actions::{Dialog, write_png};
 
 use crate::args::Args;
+use crate::camera::Camera;
 use crate::controls::{self, Command};
 use crate::layers::Layers;
 use crate::log::Level;
@@ -63,7 +64,8 @@ pub struct App {
     toasts: Toasts,
     dialog: Option<(actions::Dialog, Receiver<Option<PathBuf>>)>,
     shot: actions::Shot,
-    is_fitted: bool,
+    /// The camera as the scene was fitted, and whether with the sky's dome.
+    fitted: Option<(Camera, bool)>,
     is_framed: bool,
     typed: Option<Args>,
 }
@@ -97,7 +99,7 @@ impl App {
             toasts: Toasts::default(),
             dialog: None,
             shot: actions::Shot::default(),
-            is_fitted: false,
+            fitted: None,
             is_framed: false,
             typed: None,
         };
@@ -135,7 +137,7 @@ impl App {
         }
         self.state.request = Request::of(source);
         self.state.history.clear();
-        self.is_fitted = false;
+        self.fitted = None;
     }
 
     /// Whether all that was asked has been answered and drawn: what pictures without a user wait for.
@@ -217,10 +219,16 @@ impl App {
                 }
             }
         }
-        // The size of the view is known with its first frame.
-        if !self.is_fitted && self.state.results.scene.is_some() && self.is_framed {
+        // The size of the view is known with its first frame. The sky's dome comes later than the scene: who has not moved the
+        // camera by then sees it whole.
+        let has_dome = outdoors::dome_bounds_m(&self.state).is_some();
+        let waits = match self.fitted {
+            None => self.state.results.scene.is_some() && self.is_framed,
+            Some((camera, had_dome)) => has_dome && !had_dome && camera == self.state.camera,
+        };
+        if waits {
             view::fit(&mut self.state, self.view.size_px);
-            self.is_fitted = true;
+            self.fitted = Some((self.state.camera, has_dome));
         }
         self.is_framed = true;
         // Nodes and sensors can be picked once there is an estimate of them.
@@ -256,7 +264,7 @@ impl App {
         if is_new_scene {
             (self.state.picked, self.state.hovered) = (None, None);
             self.state.scales.clear();
-            self.is_fitted = false;
+            self.fitted = None;
             greet::scene(&mut self.state);
         }
         if !had_model && self.state.results.model.is_some() {

@@ -64,7 +64,8 @@ fn chips(ui: &mut Ui, state: &mut State, over: &Over) {
             .response
             .on_hover_text(why)
     };
-    if state.is_stale() {
+    let has_results = state.results.estimate.is_some() || state.results.outdoors.sky.is_some();
+    if has_results && state.is_stale() {
         chip(
             &mut chips,
             "Stale",

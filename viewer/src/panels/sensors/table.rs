@@ -108,8 +108,9 @@ impl Table {
             Column::Ratio => "Ratio".to_owned(),
             Column::Answer(answer) => self.answers.get(answer).map(Answer::label).unwrap_or_default(),
             Column::Exposure(quantity) => {
+                // What it is of stands in the tip: columns are narrow.
                 let measure = Measure::of(quantity);
-                format!("{} {}", measure.title(), measure.unit()).trim_end().to_owned()
+                if measure.unit().is_empty() { measure.title() } else { measure.unit() }.to_owned()
             }
             Column::Status => "Status".to_owned(),
         }
