@@ -3,6 +3,7 @@
 use crate::camera::{Camera, Standard};
 use crate::controls::Layer;
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Slice, VoxelShow};
+use crate::outdoors::QUANTITIES;
 use clap::Parser;
 use glam::{DVec3, Vec3};
 use jiff::civil::{Date, Time};
@@ -228,12 +229,12 @@ fn layer(text: &str) -> Result<Look, String> {
 
 fn exposure(name: &str) -> Option<Look> {
     let name = name.strip_prefix("exposure=")?;
-    Quantity::ALL.into_iter().find(|quantity| quantity.name() == name).map(Look::Exposure)
+    QUANTITIES.into_iter().find(|quantity| quantity.name() == name).map(Look::Exposure)
 }
 
 fn unknown(text: &str) -> String {
     let layers = LAYERS.map(|(name, _)| name).join(", ");
-    let quantities = Quantity::ALL.map(Quantity::name).join(", ");
+    let quantities = QUANTITIES.map(Quantity::name).join(", ");
     format!(
         "{text:?} is no layer; there are {layers}, sun, values, ratios, pixels; mesh=material, irradiance, exposure, shaded, \
          wireframe or transparent; nodes=irradiance, flux, radius, cell or light; voxels=solid, void or distance; \

@@ -6,7 +6,7 @@
 use crate::camera::Camera;
 use crate::colour::{ColourMap, Scale};
 use crate::controls::Preset;
-use crate::layers::Layers;
+use crate::layers::{Layers, MeshColour};
 use crate::log::Log;
 use crate::measure::Measure;
 use crate::request::{History, Request};
@@ -168,7 +168,9 @@ impl State {
 
     /// Whether the results are of an older request than the one that stands.
     pub fn is_stale(&self) -> bool {
-        self.answered.as_ref().is_some_and(|answered| *answered != self.request)
+        let faces = self.results.outdoors.faces.as_ref().filter(|_| self.layers.mesh_colour == MeshColour::Exposure);
+        let shows_old_parts = faces.is_some_and(|faces| faces.scenery.edits != self.request.edits.parts);
+        shows_old_parts || self.answered.as_ref().is_some_and(|answered| *answered != self.request)
     }
 
     /// Whether a run is under way.

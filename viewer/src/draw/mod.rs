@@ -41,7 +41,7 @@ type OfVoxels = (Same<Model>, VoxelShow, Option<Slice>);
 type OfModel<T> = (Same<Model>, Same<Estimate>, T);
 type OfSensors = (Same<Scene>, Same<Estimate>, Same<SensorExposure>, Measure);
 type Seen = (Camera, [u32; 2], bool);
-type OfMark = (Vec<Light>, Option<Picked>, bool);
+type OfMark = (Same<Scene>, Vec<Light>, Option<Picked>, bool);
 
 /// Balls and strokes of one layer.
 type Marks = (Arc<Vec<Ball>>, Arc<Vec<Stroke>>);
@@ -222,7 +222,7 @@ impl Drawer {
             let measure = layers.sensor_measure();
             let tint = Tint::Scaled(state.scale(measure));
             let exposed = Same(results.outdoors.sensors.clone());
-            let key = (of_scene, of_estimate.clone(), exposed, measure);
+            let key = (of_scene.clone(), of_estimate.clone(), exposed, measure);
             let (balls, normals) = self.sensors.get(key, |_| {
                 let (balls, normals) = marks::sensors(&results, measure, longest_m);
                 (Arc::new(balls), Arc::new(normals))
@@ -245,14 +245,17 @@ impl Drawer {
             batches.extend(self.ways.get(key, make));
         }
         if let Some(picked) = state.picked {
-            let key = (of_model.clone(), of_estimate.clone(), (lights.clone(), Some(picked), layers.ball));
+            let key =
+                (of_model.clone(), of_estimate.clone(), (of_scene.clone(), lights.clone(), Some(picked), layers.ball));
             let make = |_: &_| marks::picked(&results, &lights, picked, layers.ball, longest_m);
             batches.extend(self.picked.get(key, make));
         }
         if let Some(hovered) = state.hovered.filter(|hovered| Some(*hovered) != state.picked) {
             let without = Results { estimate: None, ..results.clone() };
             let make = |_: &_| marks::picked(&without, &lights, hovered, false, longest_m);
-            batches.extend(self.hovered.get((of_model, of_estimate, (lights.clone(), Some(hovered), false)), make));
+            batches.extend(
+                self.hovered.get((of_model, of_estimate, (of_scene, lights.clone(), Some(hovered), false)), make),
+            );
         }
         if let Some((at_m, length_m)) = state.gizmo {
             let make = |_: &_| {

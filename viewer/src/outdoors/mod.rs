@@ -23,6 +23,10 @@ pub use shown::{OutdoorState, follow_view, seen_by, tick};
 use sky::{Scenery, Sky};
 use std::sync::Arc;
 
+/// What can be shown; what surfaces reflect is not asked here.
+pub const QUANTITIES: [Quantity; 5] =
+    [Quantity::Total, Quantity::Beam, Quantity::Sky, Quantity::Svf, Quantity::SunHours];
+
 /// What is asked of sun and sky.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutdoorRequest {

@@ -2,6 +2,7 @@
 
 use super::{choice, decimals, row, rows, scrolled, section};
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Section, Slice, VoxelShow};
+use crate::outdoors::QUANTITIES;
 use crate::state::State;
 use egui::{Slider, Ui};
 use lightvein::daylight::Quantity;
@@ -55,7 +56,7 @@ fn mesh(ui: &mut Ui, layers: &mut Layers) {
             })
         });
         if *colour == MeshColour::Exposure || *per_pixel {
-            row(ui, "Quantity", |ui| choice(ui, quantity, &Quantity::ALL, Quantity::title));
+            row(ui, "Quantity", |ui| choice(ui, quantity, &QUANTITIES, Quantity::title));
         }
     });
     ui.checkbox(&mut layers.cull_near_walls, "Hide near walls")

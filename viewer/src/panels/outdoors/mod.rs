@@ -8,14 +8,11 @@ pub use place::with_weather;
 
 use super::{choice, gesture, named, row, rows, scrolled, section, told};
 use crate::layers::MeshColour;
-use crate::outdoors::OutdoorRequest;
+use crate::outdoors::{OutdoorRequest, QUANTITIES};
 use crate::state::State;
 use egui::{DragValue, Response, Ui};
 use lightvein::daylight::Quantity;
 use lightvein::scene::Site;
-
-/// What can be shown; what surfaces reflect is not asked here.
-const QUANTITIES: [Quantity; 5] = [Quantity::Total, Quantity::Beam, Quantity::Sky, Quantity::Svf, Quantity::SunHours];
 
 /// Shortest and longest sides of patches, metres; too many of them the library refuses.
 const PATCH_M: std::ops::RangeInclusive<f32> = 0.001..=10_000.0;
