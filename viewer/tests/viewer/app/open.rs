@@ -3,6 +3,7 @@
 use super::{App, Window, bring, errors, is_painted, opened, scene, settle, started, wait};
 use egui_kittest::kittest::Queryable;
 use lightvein_viewer::app::Dialog;
+use lightvein_viewer::log::Log;
 use lightvein_viewer::request::Source;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -121,6 +122,21 @@ fn what_cannot_be_read_is_told_and_the_last_good_scene_stays() {
     // And it can be gone on with.
     window.state_mut().open(Source::File(scene("two_rooms")));
     shows(&mut window, "two_rooms");
+}
+
+#[test]
+fn who_starts_with_a_scene_that_is_not_there_is_told_what_to_do() {
+    let mut window = started(Some(scene("nowhere")));
+    settle(&mut window);
+    assert!(errors(&window).contains("nowhere.toml"), "{}", errors(&window));
+    assert!(is_painted(&window, "no scene is open: File, Open, or drop a file here"));
+    // There is nothing that could be of another request, or cut.
+    assert!(!is_painted(&window, "Stale") && window.query_by_label("Cut: show the whole mesh").is_none());
+
+    window.state_mut().state.log = Log::default();
+    window.state_mut().open(Source::File(scene("two_rooms")));
+    shows(&mut window, "two_rooms");
+    assert!(!is_painted(&window, "no scene is open"));
 }
 
 #[test]

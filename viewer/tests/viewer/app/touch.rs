@@ -205,3 +205,22 @@ fn the_help_sheet_opens_by_its_key_and_closes_by_esc() {
     window.run();
     assert!(window.query_by_label("look from the front (south)").is_none());
 }
+
+#[test]
+fn esc_closes_an_open_list_and_lets_go_of_what_is_picked_only_then() {
+    let mut window = opened("two_rooms");
+    let at = place(&window, light_m(&window.state().state));
+    click(&mut window, at);
+    bring(&mut window, "Scene");
+    window.get_by_role_and_label(Role::ComboBox, "Method").click();
+    window.run();
+    let choices = |window: &Window| window.query_all_by_role_and_label(Role::Button, "diffusion").count();
+    let open = choices(&window);
+    window.key_press(Key::Escape);
+    window.run();
+    assert_eq!(choices(&window), open - 1, "the list is closed");
+    assert_eq!(window.state().state.picked, Some(Picked::Light(0)));
+    window.key_press(Key::Escape);
+    window.run();
+    assert_eq!(window.state().state.picked, None);
+}
