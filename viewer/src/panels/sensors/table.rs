@@ -107,8 +107,9 @@ impl Table {
             Column::Reference => "Reference".to_owned(),
             Column::Ratio => "Ratio".to_owned(),
             Column::Answer(answer) => self.answers.get(answer).map(Answer::label).unwrap_or_default(),
+            // What it is of stands in the tip: columns are narrow.
+            Column::Exposure(Quantity::SunHours) => "Sun, h".to_owned(),
             Column::Exposure(quantity) => {
-                // What it is of stands in the tip: columns are narrow.
                 let measure = Measure::of(quantity);
                 if measure.unit().is_empty() { measure.title() } else { measure.unit() }.to_owned()
             }
