@@ -71,6 +71,8 @@ pub mod trace;
 
 pub mod daylight;
 
+pub mod guide;
+
 pub mod study;
 
 pub mod export;

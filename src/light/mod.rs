@@ -2,11 +2,14 @@
 //!
 //! [`Sources`] are what shines, [`Settings`] what the caller chooses, a [`Field`] is the answer at the scene's sensors in
 //! their order. Estimators (`flow`) and truth (`trace`) share these and never import each other. What a scene's sources
-//! are, and where each stands, is in `sources`; how to draw a direction towards one, in `sampling`.
+//! are, and where each stands, is in `sources`; how to draw a direction towards one, in `sampling`; what guides a tracer, in
+//! `lobes`.
 
+mod lobes;
 mod sampling;
 mod sources;
 
+pub use lobes::{Guiding, Incident, Lobe, MOST_LOBES};
 pub use sampling::{Emission, LightSample, Sampler};
 pub use sources::Aim;
 

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules in the order in which they may use each other: each may name itself and those before it.
-const ORDER: [&str; 15] = [
+const ORDER: [&str; 16] = [
     "job", "space", "scene", "rays", "voxel", "skeleton", "sky", "light", "model", "flow", "trace", "daylight",
-    "study", "export", "cli",
+    "guide", "study", "export", "cli",
 ];
 
 /// Pairs that stand beside each other and never meet, though the order would let the second use the first.
