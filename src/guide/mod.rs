@@ -8,18 +8,116 @@
 //!
 //! Limits: those of the network. What the voxels close has no place of its own.
 
+pub mod cache;
 pub mod fit;
+pub mod necks;
 pub mod places;
+pub mod probes;
+pub mod samples;
+pub mod shares;
+pub mod sights;
+pub mod vpls;
+pub mod whole;
 
-use crate::light::Incident;
+use crate::flow::network::patches::Start;
+use crate::flow::network::{Network, Quality};
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Incident, Settings};
+use crate::model::Model;
+use crate::model::walls::Answer;
 use glam::Vec3;
+use shares::Shares;
+
+/// Virtual point lights, about.
+const VIRTUAL_LIGHTS: usize = 1024;
+
+/// Told where nothing shines.
+const NO_LIGHT: &str = "no light shines into the void: all light in the guide is zero";
+
+/// A guide beside the network that it stands on.
+pub struct Seeded<'a> {
+    /// What measured the light.
+    pub network: Network<'a>,
+    /// What it says.
+    pub guide: Guide,
+}
+
+impl Seeded<'_> {
+    /// The place that speaks for a point (metres): with the normal of the surface it lies on the number of a wall place in
+    /// [`Guide::walls`], in the open that of a node in [`Guide::nodes`]. `None` where no void of ours is.
+    ///
+    /// Costs some look-ups among the voxels; in corners that these close, a few rays.
+    pub fn place_of(&self, point_m: Vec3, normal: Option<Vec3>) -> Option<u32> {
+        let grounds = &self.network.grounds;
+        let Some(normal) = normal else {
+            return grounds.model.place(point_m, None).ok().map(|node| node.index() as u32);
+        };
+        // Who asks where light comes from has come to something that reflects.
+        let at = Start { position_m: point_m, normal, answer: Answer { reflects: 1.0, passes: 0.0 } };
+        grounds.patches.at(grounds.model, &grounds.zones, &at, -normal, 0.0)
+    }
+}
+
+/// Everything that a renderer can be seeded with, for all emitters of a model; `settings` gives the seed. Costs a network of
+/// that quality and about as much again.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn guide<'a>(
+    model: &'a Model,
+    quality: &Quality,
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Seeded<'a>, Cancelled> {
+    // The part of each emitter comes by a cheaper way.
+    let settings = &Settings { shares: false, ..*settings };
+    let (network, lines) = Network::new(model, quality, settings, progress, cancel)?;
+    let radiosity_w_m2 = places::radiosity_w_m2(&network);
+
+    let shares = staged("shares", progress, cancel, || Shares::new(&network))?;
+    let views = staged("views", progress, cancel, || cache::views(&network, &lines, &radiosity_w_m2))?;
+    let walls = staged("walls", progress, cancel, || {
+        whole::walls(&network, places::at_walls(&network, &lines), &shares, &views)
+    })?;
+    let nodes = staged("nodes", progress, cancel, || {
+        whole::nodes(&network, places::at_nodes(&network, &lines, settings.seed), &shares)
+    })?;
+    let necks = staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
+    let vpls = vpls::virtual_lights(&network, &radiosity_w_m2, VIRTUAL_LIGHTS);
+    progress.begin("probes", 0);
+    let probes = probes::probes(&network, &lines, settings, progress, cancel)?;
+    progress.end();
+    let cache = cache::records(&walls, &views);
+    let samples = staged("samples", progress, cancel, || samples::samples(&network, &lines, &radiosity_w_m2))?;
+
+    let dark = network.lamps().next().is_none().then(|| NO_LIGHT.to_owned());
+    let warnings = network.warnings().iter().cloned().chain(dark).collect();
+    let guide = Guide { nodes, walls, necks, vpls, probes, cache, samples, warnings };
+    Ok(Seeded { network, guide })
+}
+
+/// One step, reported; stops before it when asked to.
+fn staged<T>(
+    stage: &str,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+    work: impl FnOnce() -> T,
+) -> Result<T, Cancelled> {
+    cancel.check()?;
+    progress.begin(stage, 0);
+    let done = work();
+    progress.end();
+    Ok(done)
+}
 
 /// What a renderer is seeded with. Positions are the scene's own, metres.
 #[derive(Debug, Clone, Default)]
 pub struct Guide {
     /// The light at each node of the skeleton, in their order.
     pub nodes: Vec<Place>,
-    /// The light on walls: every zone of the void has a point on each side it sees.
+    /// The light on walls, one place for each patch of [`Seeded::network`], in their order: every zone of the void has a point
+    /// on each side it sees.
     pub walls: Vec<Place>,
     /// The doorways and windows, those of the skeleton in their order.
     pub necks: Vec<Opening>,
@@ -121,6 +219,6 @@ pub struct TrainingSample {
     pub density_per_sr: f32,
     /// Distance to what shines, metres.
     pub distance_m: f32,
-    /// Bit 0: what shines is an emitter itself (else a wall that reflects).
+    /// As OpenPGL has them: [`samples::DIRECT_LIGHT`] where what shines is an emitter itself, 0 where it is a wall.
     pub flags: u32,
 }

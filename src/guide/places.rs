@@ -125,7 +125,7 @@ pub fn at_nodes(network: &Network, lines: &[Line], seed: u64) -> Vec<Incident> {
 }
 
 /// What each patch sends out by all reflections, W/m2.
-fn radiosity_w_m2(network: &Network) -> Vec<f64> {
+pub(super) fn radiosity_w_m2(network: &Network) -> Vec<f64> {
     let of = |(number, patch): (usize, &crate::flow::network::patches::Patch)| {
         let landed_w: f64 = network.landings.iter().map(|landing| landing.reflected_w[number]).sum();
         let reflected_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[number]).sum();

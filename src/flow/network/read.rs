@@ -158,7 +158,7 @@ impl Tracks {
 }
 
 /// The radiosities that a stretch of a line sees behind and ahead of it, weakened by glazing between, and that of the panes.
-fn seen_from(line: &Line, panes_before: usize, radiosity_w_m2: &[f64]) -> [f64; 2] {
+pub fn seen_from(line: &Line, panes_before: usize, radiosity_w_m2: &[f64]) -> [f64; 2] {
     let of = |patch: u32| radiosity_w_m2.get(patch as usize).copied().unwrap_or(0.0);
     let of_end = |end: End| if let End::Patch(patch) = end { of(patch) } else { 0.0 };
     let (before, after) = line.panes.split_at(panes_before.min(line.panes.len()));

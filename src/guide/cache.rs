@@ -1,0 +1,60 @@
+//! What does an irradiance cache start with?
+//!
+//! At every wall place the irradiance that the network knows, and Ward's validity radius: the harmonic mean distance to what
+//! the point sees, by the cosine (Ward, Rubinstein & Clear 1988). The sights of the place's patch stand for its own.
+
+use super::sights::sights;
+use super::{CacheRecord, Place};
+use crate::flow::network::Network;
+use crate::flow::network::lines::Line;
+
+/// Cosines below this count as this where one is divided by them: a sight along a wall would outweigh all others.
+const LEAST_COSINE: f32 = 0.05;
+
+/// What a patch sees, by its sights.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct View {
+    /// Harmonic mean distance to what it sees, metres.
+    pub radius_m: f32,
+    /// Scalar irradiance by reflected light, over the hemisphere before it, W/m2.
+    pub scalar_w_m2: f32,
+}
+
+/// The view of each patch; `radiosity_w_m2` is the patches' own. One without a sight has the root of its area for a radius.
+pub fn views(network: &Network, lines: &[Line], radiosity_w_m2: &[f64]) -> Vec<View> {
+    // Sums of weight, weight over distance, weight over cosine, and radiosity by weight over cosine.
+    let mut sums = vec![[0.0_f64; 4]; network.grounds.patches.list.len()];
+    for sight in lines.iter().flat_map(|line| sights(line, radiosity_w_m2)) {
+        let Some(sum) = sums.get_mut(sight.patch as usize) else { continue };
+        let by_angle_m2 = sight.weight_m2 / f64::from(sight.cosine().max(LEAST_COSINE));
+        let distance_m = f64::from(sight.distance_m).max(f64::from(network.grounds.model.rays.epsilon_m()));
+        let parts = [sight.weight_m2, sight.weight_m2 / distance_m, by_angle_m2, by_angle_m2 * sight.radiosity_w_m2];
+        sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+    }
+    let view = |(patch, [weight, over_distance, over_cosine, shining]): (&crate::flow::network::patches::Patch, [f64; 4])| {
+        match weight > 0.0 {
+            // Even radiance L is a scalar irradiance of 2 pi L, and pi L is the radiosity.
+            true => View {
+                radius_m: (weight / over_distance) as f32,
+                scalar_w_m2: (2.0 * shining / over_cosine) as f32,
+            },
+            false => View { radius_m: patch.area_m2.sqrt() as f32, scalar_w_m2: 0.0 },
+        }
+    };
+    network.grounds.patches.list.iter().zip(sums).map(view).collect()
+}
+
+/// A record for each wall place, whose patches have these views.
+pub fn records(walls: &[Place], views: &[View]) -> Vec<CacheRecord> {
+    let record = |(place, view): (&Place, &View)| {
+        let incident = &place.incident;
+        CacheRecord {
+            position_m: incident.position_m,
+            normal: incident.normal.unwrap_or_default(),
+            reflected_w_m2: incident.reflected_w_m2,
+            irradiance_w_m2: incident.reflected_w_m2 + incident.direct_w_m2.iter().sum::<f32>(),
+            radius_m: view.radius_m,
+        }
+    };
+    walls.iter().zip(views).map(record).collect()
+}

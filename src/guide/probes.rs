@@ -1,0 +1,116 @@
+//! Where should light probes stand, and what do they see?
+//!
+//! Nodes of the skeleton, those farthest from matter first, and after them the middles of zones, each where no probe of its room
+//! stands within half the width of the passage there (a greedy cover). Every room has one; every point of the void has one
+//! within about half a width. What a probe sees are the two numbers of a diffuse field, scalar irradiance and net flux, which
+//! are its spherical harmonics of orders 0 and 1 (Ramamoorthi & Hanrahan 2001), light straight from emitters included.
+
+use super::LightProbe;
+use crate::flow::network::Network;
+use crate::flow::network::lines::Line;
+use crate::flow::network::read;
+use crate::flow::sequence;
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Reading, Settings};
+use crate::model::{Model, Probe};
+use glam::{DVec3, Vec3};
+use petgraph::graph::NodeIndex;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Directions, besides those of the axes, in which the nearest wall is looked for from the middle of a zone.
+const LOOKS: u32 = 64;
+
+/// A place where a probe may stand.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    position_m: Vec3,
+    node: NodeIndex,
+    cell: u32,
+    /// How far it speaks for the void around it, metres.
+    reach_m: f32,
+    /// Distance to the nearest wall, metres, where it is known.
+    radius_m: Option<f32>,
+}
+
+/// Probes for all rooms, room by room.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn probes(
+    network: &Network,
+    lines: &[Line],
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<LightProbe>, Cancelled> {
+    let model = network.grounds.model;
+    let chosen = cover(model, candidates(network));
+    let asked: Vec<Probe> = chosen
+        .iter()
+        .map(|candidate| Probe { position_m: candidate.position_m, normal: None, place: Ok(candidate.node) })
+        .collect();
+    let tracks = network.tracks(lines, settings);
+    let field = read::read(network, &tracks, &asked, settings, progress, cancel)?;
+    let probe = |(candidate, reading): (&Candidate, &Reading)| LightProbe {
+        position_m: candidate.position_m,
+        radius_m: candidate.radius_m.unwrap_or_else(|| nearest_wall_m(model, candidate.position_m)),
+        cell: candidate.cell,
+        sh_w_m2_sr: harmonics(reading.value_w_m2, reading.flux_w_m2),
+    };
+    Ok(chosen.par_iter().zip(&field.readings).map(probe).collect())
+}
+
+/// Spherical harmonics (0,0), (1,-1), (1,0), (1,1) of a radiance with that scalar irradiance and net flux, W/m2/sr: projections
+/// on 1, y, z and x, whose norms over the sphere are 4 pi and 4 pi / 3.
+fn harmonics(scalar_w_m2: f64, flux_w_m2: DVec3) -> [f32; 4] {
+    let (zeroth, first) = ((0.25 / PI).sqrt(), (0.75 / PI).sqrt());
+    [zeroth * scalar_w_m2, first * flux_w_m2.y, first * flux_w_m2.z, first * flux_w_m2.x].map(|part| part as f32)
+}
+
+/// All nodes, the most open first, then the middles of zones that lie in the void.
+fn candidates(network: &Network) -> Vec<Candidate> {
+    let model = network.grounds.model;
+    let (graph, lattice) = (&model.skeleton.graph, &model.voxels.lattice);
+    let reach_m = |node: NodeIndex| graph[node].opening_voxels.max(1) as f32 * lattice.voxel_m;
+    let at_node = |node: NodeIndex| Candidate {
+        position_m: graph[node].position_m,
+        node,
+        cell: graph[node].cell,
+        reach_m: reach_m(node),
+        radius_m: Some(graph[node].radius_m),
+    };
+    let mut nodes: Vec<NodeIndex> = graph.node_indices().collect();
+    nodes.sort_by(|&a, &b| graph[b].radius_m.total_cmp(&graph[a].radius_m).then(a.cmp(&b)));
+    let at_middle = |(zone, position_m): (u32, Vec3)| {
+        let node = model.skeleton.nearest_node(lattice.voxel_at(position_m))?;
+        let cell = graph[node].cell;
+        let is_its_own = network.grounds.zones.cell(zone) == cell;
+        is_its_own.then(|| Candidate { position_m, node, cell, reach_m: reach_m(node), radius_m: None })
+    };
+    nodes.into_iter().map(at_node).chain(network.grounds.zones.middles_m().filter_map(at_middle)).collect()
+}
+
+/// Those of the candidates, in their order, that none before speaks for; by room.
+fn cover(model: &Model, candidates: Vec<Candidate>) -> Vec<Candidate> {
+    let mut chosen: Vec<Vec<Candidate>> = vec![Vec::new(); model.skeleton.cells.len()];
+    for candidate in candidates {
+        let Some(room) = chosen.get_mut(candidate.cell as usize) else { continue };
+        let is_near = |other: &Candidate| {
+            let reach_m = candidate.reach_m.min(other.reach_m);
+            other.position_m.distance_squared(candidate.position_m) < reach_m * reach_m
+        };
+        if !room.iter().any(is_near) {
+            room.push(candidate);
+        }
+    }
+    chosen.concat()
+}
+
+/// The distance to the nearest wall as rays find it, metres; 0 where there is none.
+fn nearest_wall_m(model: &Model, from_m: Vec3) -> f32 {
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    let around = (0..LOOKS).map(|look| sequence::spiral(look, LOOKS, [0.5; 2]));
+    let found_m = axes.chain(around).filter_map(|look| model.rays.closest(from_m, look, f32::INFINITY));
+    found_m.map(|hit| hit.distance_m).reduce(f32::min).unwrap_or(0.0)
+}

@@ -1,0 +1,95 @@
+//! What would a guiding library have learnt from a first pass?
+//!
+//! Samples of incident radiance at the ends of the network's lines, in the form that OpenPGL takes: it fits its own
+//! distributions to them before the first frame. A patch of K sights that add up to `D` looks along a sight of weight `w` with
+//! density `cosine / pi D / (K w)`: by the cosine where all sights weigh the same. With it the mean of weight times cosine over
+//! the patch's samples is the irradiance that the network has measured there.
+//!
+//! Limits: radiance is a patch's mean; point lights are met by no line, so only bodies of light appear as emitters.
+
+use super::TrainingSample;
+use super::sights::{Sight, sights};
+use crate::flow::network::Network;
+use crate::flow::network::lines::Line;
+use crate::flow::network::walk::End;
+use crate::light::{Emitter, Shape};
+use crate::model::Model;
+use crate::rays::Hit;
+use crate::scene::Light;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// OpenPGL's flag for light straight from an emitter (`PGLSampleData::EDirectLight`).
+pub const DIRECT_LIGHT: u32 = 1 << 1;
+
+/// Sights closer to the surface than this, by their cosine, are left out: their density says nothing.
+const LEAST_COSINE: f32 = 1e-3;
+
+/// Panes that a sight of an emitter may pass.
+const MOST_PANES: usize = 16;
+
+/// A sample for each sight of each line, in the order of the lines; of what shines and of what is dark. `radiosity_w_m2` is the
+/// patches' own.
+pub fn samples(network: &Network, lines: &[Line], radiosity_w_m2: &[f64]) -> Vec<TrainingSample> {
+    let counts = |sight: &Sight| sight.cosine() > LEAST_COSINE;
+    let patches = network.grounds.patches.list.len();
+    let (mut count, mut seen_m2) = (vec![0_u32; patches], vec![0.0; patches]);
+    for sight in lines.iter().flat_map(|line| sights(line, radiosity_w_m2)).filter(counts) {
+        count[sight.patch as usize] += 1;
+        seen_m2[sight.patch as usize] += sight.weight_m2;
+    }
+    let model = network.grounds.model;
+    let emitting_faces = model.sources.emitters.iter().any(|emitter| matches!(emitter.shape, Shape::Patch { .. }));
+    let sample = |sight: Sight| {
+        let mean_m2 = seen_m2[sight.patch as usize] / f64::from(count[sight.patch as usize]);
+        let density_per_sr = f64::from(sight.cosine()) / PI * mean_m2 / sight.weight_m2;
+        let may_emit = match sight.far {
+            End::Black => true,
+            End::Patch(patch) => emitting_faces && network.grounds.patches.list[patch as usize].reflectance <= 0.0,
+            End::Outside => false,
+        };
+        let emitted_w_m2_sr = if may_emit { emitted_w_m2_sr(model, &sight) } else { 0.0 };
+        let radiance_w_m2_sr = sight.radiosity_w_m2 / PI + emitted_w_m2_sr;
+        TrainingSample {
+            position_m: sight.from_m,
+            direction: sight.direction,
+            weight_w_m2: (radiance_w_m2_sr / density_per_sr) as f32,
+            density_per_sr: density_per_sr as f32,
+            distance_m: sight.distance_m,
+            flags: if emitted_w_m2_sr > 0.0 { DIRECT_LIGHT } else { 0 },
+        }
+    };
+    let of_line = |line| sights(line, radiosity_w_m2).filter(counts).map(sample);
+    lines.par_iter().with_min_len(1024).flat_map_iter(of_line).collect()
+}
+
+/// The radiance of the emitter that a sight ends on, as it comes through glazing; 0 where it ends on none.
+fn emitted_w_m2_sr(model: &Model, sight: &Sight) -> f64 {
+    let lift_m = model.rays.epsilon_m();
+    let (mut from_m, mut share) = (sight.from_m + sight.normal * lift_m, 1.0);
+    for _ in 0..=MOST_PANES {
+        let Some(hit) = model.rays.closest(from_m, sight.direction, f32::INFINITY) else { break };
+        if let Some(emitter) = model.sources.emitters.iter().find(|emitter| emitter.owns(hit.surface)) {
+            return share * radiance_w_m2_sr(emitter, &hit);
+        }
+        let passes = f64::from(model.walls.answer(hit.surface).passes);
+        if passes <= 0.0 {
+            break;
+        }
+        share *= passes;
+        from_m += hit.distance_m * sight.direction - hit.facing() * lift_m;
+    }
+    0.0
+}
+
+/// The radiance that an emitter shows to a ray that hit it; 0 from behind.
+fn radiance_w_m2_sr(emitter: &Emitter, hit: &Hit) -> f64 {
+    match emitter.shape {
+        Shape::Light(_, Light::Sphere { radius_m, .. }) => emitter.flux_w / (2.0 * PI * f64::from(radius_m)).powi(2),
+        Shape::Light(_, Light::Quad { u_m, v_m, .. }) if hit.front => {
+            emitter.flux_w / (PI * f64::from(u_m.cross(v_m).length()))
+        }
+        Shape::Patch { radiance_w_m2_sr, .. } if hit.front => radiance_w_m2_sr,
+        _ => 0.0,
+    }
+}
