@@ -31,16 +31,17 @@ pub fn views(network: &Network, lines: &[Line], radiosity_w_m2: &[f64]) -> Vec<V
         let parts = [sight.weight_m2, sight.weight_m2 / distance_m, by_angle_m2, by_angle_m2 * sight.radiosity_w_m2];
         sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
     }
-    let view = |(patch, [weight, over_distance, over_cosine, shining]): (&crate::flow::network::patches::Patch, [f64; 4])| {
-        match weight > 0.0 {
-            // Even radiance L is a scalar irradiance of 2 pi L, and pi L is the radiosity.
-            true => View {
-                radius_m: (weight / over_distance) as f32,
-                scalar_w_m2: (2.0 * shining / over_cosine) as f32,
-            },
-            false => View { radius_m: patch.area_m2.sqrt() as f32, scalar_w_m2: 0.0 },
-        }
-    };
+    let view =
+        |(patch, [weight, over_distance, over_cosine, shining]): (&crate::flow::network::patches::Patch, [f64; 4])| {
+            match weight > 0.0 {
+                // Even radiance L is a scalar irradiance of 2 pi L, and pi L is the radiosity.
+                true => View {
+                    radius_m: (weight / over_distance) as f32,
+                    scalar_w_m2: (2.0 * shining / over_cosine) as f32,
+                },
+                false => View { radius_m: patch.area_m2.sqrt() as f32, scalar_w_m2: 0.0 },
+            }
+        };
     network.grounds.patches.list.iter().zip(sums).map(view).collect()
 }
 
@@ -57,4 +58,44 @@ pub fn records(walls: &[Place], views: &[View]) -> Vec<CacheRecord> {
         }
     };
     walls.iter().zip(views).map(record).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::network::Quality;
+    use crate::flow::sequence;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, room};
+    use crate::job::{Cancel, Quiet};
+    use crate::light::Settings;
+    use std::f32::consts::PI;
+
+    #[test]
+    fn views_of_a_cube_are_what_quadrature_gives_and_even_light_is_even() {
+        let (_, model) = modelled(&room(), vec![lamp(Vec3::new(1.0, 0.5, 1.5), FLUX_W)], Vec::new());
+        let (network, lines) =
+            Network::new(&model, &Quality::FINE, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        let patches = &network.grounds.patches;
+        let views = views(&network, &lines, &vec![f64::from(PI); patches.list.len()]);
+        for (patch, view) in patches.list.iter().zip(views) {
+            assert!((view.scalar_w_m2 / (2.0 * PI) - 1.0).abs() < 1e-5, "{view:?}");
+            // The same from the patch's points by even directions to the walls of the box.
+            let starts = &patches.starts[patch.starts.clone()];
+            let (mut over, mut count) = (0.0, 0.0);
+            for (number, start) in starts.iter().enumerate() {
+                for index in 0..256 {
+                    let towards = sequence::cosine_about(start.normal, sequence::square(index, sequence::offset(9, number as u64)));
+                    let ahead_m = |axis: usize| {
+                        let wall_m = if towards[axis] > 0.0 { 3.0 } else { 0.0 };
+                        (wall_m - start.position_m[axis]) / towards[axis]
+                    };
+                    let distance_m = ahead_m(0).min(ahead_m(1)).min(ahead_m(2));
+                    over += 1.0 / distance_m.max(1e-3);
+                    count += 1.0;
+                }
+            }
+            let want_m = count / over;
+            assert!((view.radius_m / want_m - 1.0).abs() < 0.15, "{} m is not {want_m} m", view.radius_m);
+        }
+    }
 }

@@ -19,12 +19,10 @@ pub mod sights;
 pub mod vpls;
 pub mod whole;
 
-use crate::flow::network::patches::Start;
-use crate::flow::network::{Network, Quality};
+use crate::flow::network::{Grounds, Network, Quality};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Incident, Settings};
 use crate::model::Model;
-use crate::model::walls::Answer;
 use glam::Vec3;
 use shares::Shares;
 
@@ -34,27 +32,33 @@ const VIRTUAL_LIGHTS: usize = 1024;
 /// Told where nothing shines.
 const NO_LIGHT: &str = "no light shines into the void: all light in the guide is zero";
 
-/// A guide beside the network that it stands on.
+/// A guide beside what it stands on, which a guided tracer asks for places.
 pub struct Seeded<'a> {
     /// What measured the light.
     pub network: Network<'a>,
-    /// What it says.
+    /// The light in the zones of its void, in their order.
+    pub zones: Vec<Incident>,
+    /// What both say.
     pub guide: Guide,
 }
 
 impl Seeded<'_> {
-    /// The place that speaks for a point (metres): with the normal of the surface it lies on the number of a wall place in
-    /// [`Guide::walls`], in the open that of a node in [`Guide::nodes`]. `None` where no void of ours is.
+    /// The places of [`Guiding`](crate::light::Guiding): those on walls, then the zones.
+    pub fn places(&self) -> Vec<&Incident> {
+        self.guide.walls.iter().map(|place| &place.incident).chain(&self.zones).collect()
+    }
+
+    /// Which of [`Seeded::places`] speaks for a point (metres): with the normal of the surface it lies on a wall place, where
+    /// there is one that looks the same way, else the zone it lies in. `None` where no void of ours is.
     ///
-    /// Costs some look-ups among the voxels; in corners that these close, a few rays.
+    /// Costs a few look-ups among the voxels, no ray.
     pub fn place_of(&self, point_m: Vec3, normal: Option<Vec3>) -> Option<u32> {
-        let grounds = &self.network.grounds;
-        let Some(normal) = normal else {
-            return grounds.model.place(point_m, None).ok().map(|node| node.index() as u32);
-        };
-        // Who asks where light comes from has come to something that reflects.
-        let at = Start { position_m: point_m, normal, answer: Answer { reflects: 1.0, passes: 0.0 } };
-        grounds.patches.at(grounds.model, &grounds.zones, &at, -normal, 0.0)
+        let Grounds { model, zones, patches, .. } = &self.network.grounds;
+        let on_wall = normal.and_then(|normal| patches.near(model, zones, point_m, normal));
+        on_wall.or_else(|| {
+            let node = model.skeleton.nearest.node(model.voxels.lattice.voxel_at(point_m))?;
+            Some(self.guide.walls.len() as u32 + zones.at(node, point_m))
+        })
     }
 }
 
@@ -80,10 +84,11 @@ pub fn guide<'a>(
     let walls = staged("walls", progress, cancel, || {
         whole::walls(&network, places::at_walls(&network, &lines), &shares, &views)
     })?;
-    let nodes = staged("nodes", progress, cancel, || {
-        whole::nodes(&network, places::at_nodes(&network, &lines, settings.seed), &shares)
-    })?;
-    let necks = staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
+    let zones = staged("open", progress, cancel, || places::in_zones(&network, &lines, settings.seed))?;
+    let nodes =
+        staged("nodes", progress, cancel, || whole::nodes(&network, places::at_nodes(&network, &zones), &shares))?;
+    let necks =
+        staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
     let vpls = vpls::virtual_lights(&network, &radiosity_w_m2, VIRTUAL_LIGHTS);
     progress.begin("probes", 0);
     let probes = probes::probes(&network, &lines, settings, progress, cancel)?;
@@ -91,19 +96,15 @@ pub fn guide<'a>(
     let cache = cache::records(&walls, &views);
     let samples = staged("samples", progress, cancel, || samples::samples(&network, &lines, &radiosity_w_m2))?;
 
+    let reflectances = network.grounds.patches.list.iter().map(|patch| patch.reflectance as f32).collect();
     let dark = network.lamps().next().is_none().then(|| NO_LIGHT.to_owned());
     let warnings = network.warnings().iter().cloned().chain(dark).collect();
-    let guide = Guide { nodes, walls, necks, vpls, probes, cache, samples, warnings };
-    Ok(Seeded { network, guide })
+    let guide = Guide { nodes, walls, reflectances, necks, vpls, probes, cache, samples, warnings };
+    Ok(Seeded { network, zones, guide })
 }
 
 /// One step, reported; stops before it when asked to.
-fn staged<T>(
-    stage: &str,
-    progress: &dyn Progress,
-    cancel: &Cancel,
-    work: impl FnOnce() -> T,
-) -> Result<T, Cancelled> {
+fn staged<T>(stage: &str, progress: &dyn Progress, cancel: &Cancel, work: impl FnOnce() -> T) -> Result<T, Cancelled> {
     cancel.check()?;
     progress.begin(stage, 0);
     let done = work();
@@ -119,6 +120,8 @@ pub struct Guide {
     /// The light on walls, one place for each patch of [`Seeded::network`], in their order: every zone of the void has a point
     /// on each side it sees.
     pub walls: Vec<Place>,
+    /// Mean reflectance of the walls around each of [`Guide::walls`].
+    pub reflectances: Vec<f32>,
     /// The doorways and windows, those of the skeleton in their order.
     pub necks: Vec<Opening>,
     /// Virtual point lights.

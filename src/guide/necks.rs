@@ -54,7 +54,8 @@ fn reflected_w(portal: &Portal, lines: &[Line], radiosity_w_m2: &[f64]) -> [f64;
     for line in lines {
         let Some(crossing) = portal.crossing(line.from_m, line.direction, line.length_m) else { continue };
         let before = |at_m: f32| at_m < crossing.distance_m;
-        let panes_before = line.panes.iter().filter(|pane| before((pane.at.position_m - line.from_m).dot(line.direction)));
+        let panes_before =
+            line.panes.iter().filter(|pane| before((pane.at.position_m - line.from_m).dot(line.direction)));
         let [behind, ahead] = seen_from(line, panes_before.count(), radiosity_w_m2);
         let along = line.direction.dot(portal.normal) > 0.0;
         let [forwards, back] = if along { [behind, ahead] } else { [ahead, behind] };
@@ -82,4 +83,61 @@ fn straight_w(network: &Network, portal: &Portal, offset: [f64; 2]) -> [f64; 2] 
         }
     }
     sums_w_m2.map(|sum_w_m2| portal.area_m2 * sum_w_m2 / f64::from(points))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::network::Quality;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, two_rooms};
+    use crate::job::{Cancel, Quiet};
+    use crate::light::Settings;
+    use glam::Vec3;
+    use std::f64::consts::PI;
+
+    /// The one neck of two rooms with a lamp of that flux in the first, whose patches have that radiosity by their cell.
+    fn neck(flux_w: f64, radiosity_w_m2: [f64; 2]) -> Opening {
+        let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 2.5, 1.5), flux_w)], Vec::new());
+        let quality = Quality::MEDIUM;
+        let (network, lines) =
+            Network::new(&model, &quality, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        let zones = &network.grounds.zones;
+        let patches = &network.grounds.patches.list;
+        let radiosity_w_m2: Vec<f64> =
+            patches.iter().map(|patch| radiosity_w_m2[zones.cell(patch.zone) as usize]).collect();
+        let mut found = openings(&network, &lines, &radiosity_w_m2, 0);
+        assert_eq!((found.len(), found[0].cells), (1, [0, 1]));
+        found.remove(0)
+    }
+
+    #[test]
+    fn even_radiance_flows_both_ways_by_the_area() {
+        let radiance_w_m2_sr = 3.0;
+        let door = neck(0.0, [PI * radiance_w_m2_sr; 2]);
+        assert!((door.area_m2 / 3.0 - 1.0).abs() < 0.05, "{}", door.area_m2);
+        for flux_w in door.flux_w {
+            let want_w = PI * radiance_w_m2_sr * f64::from(door.area_m2);
+            assert!((flux_w / want_w - 1.0).abs() < 1e-5, "{flux_w} is not {want_w}");
+        }
+    }
+
+    #[test]
+    fn light_flows_from_the_room_that_has_it() {
+        let door = neck(0.0, [5.0, 0.0]);
+        let all_w = 5.0 * f64::from(door.area_m2);
+        // The reveals of the door belong to either room.
+        assert!(door.flux_w[0] > 0.8 * all_w && door.flux_w[1] < 0.2 * all_w, "{:?} of {all_w}", door.flux_w);
+        assert!((door.flux_w[0] + door.flux_w[1] - all_w).abs() < 1e-6 * all_w);
+    }
+
+    #[test]
+    fn a_lamp_sends_through_what_its_solid_angle_says() {
+        let door = neck(FLUX_W, [0.0; 2]);
+        // A rectangle of 1 x 3 m squarely before the lamp.
+        let (a, b, d) = (0.5_f64, 1.5_f64, f64::from(door.position_m.x) - 2.0);
+        let angle_sr = 4.0 * (a * b / ((a * a + d * d) * (b * b + d * d)).sqrt()).asin();
+        let want_w = FLUX_W * angle_sr / (4.0 * PI);
+        assert!((door.flux_w[0] / want_w - 1.0).abs() < 0.05, "{} is not {want_w}", door.flux_w[0]);
+        assert_eq!(door.flux_w[1], 0.0);
+    }
 }

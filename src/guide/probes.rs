@@ -114,3 +114,47 @@ fn nearest_wall_m(model: &Model, from_m: Vec3) -> f32 {
     let found_m = axes.chain(around).filter_map(|look| model.rays.closest(from_m, look, f32::INFINITY));
     found_m.map(|hit| hit.distance_m).reduce(f32::min).unwrap_or(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::network::Quality;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, two_rooms};
+    use crate::job::Quiet;
+
+    #[test]
+    fn harmonics_of_even_and_of_narrow_light_are_the_closed_forms() {
+        let radiance_w_m2_sr = 2.0;
+        let even = harmonics(4.0 * PI * radiance_w_m2_sr, DVec3::ZERO);
+        assert!((f64::from(even[0]) - radiance_w_m2_sr * (4.0 * PI).sqrt()).abs() < 1e-5 && even[1..] == [0.0; 3]);
+        // A beam of 1 W/m2 from one direction has the harmonics' own values there.
+        let towards = DVec3::new(0.48, -0.6, 0.64);
+        let beam = harmonics(1.0, towards).map(f64::from);
+        let want = [0.282_095, 0.488_603 * towards.y, 0.488_603 * towards.z, 0.488_603 * towards.x];
+        assert!(beam.iter().zip(want).all(|(found, want)| (found - want).abs() < 1e-6), "{beam:?} is not {want:?}");
+    }
+
+    #[test]
+    fn every_room_has_probes_and_every_node_one_near() {
+        let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
+        let never = Cancel::new();
+        let (network, lines) =
+            Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &never).expect("nobody stops it");
+        let found = probes(&network, &lines, &Settings::default(), &Quiet, &never).expect("nobody stops it");
+        let graph = &model.skeleton.graph;
+        for node in graph.node_weights() {
+            let reach_m = f32::from(node.opening_voxels) * model.voxels.lattice.voxel_m;
+            let is_near = |probe: &LightProbe| {
+                probe.cell == node.cell && probe.position_m.distance(node.position_m) <= reach_m
+            };
+            assert!(found.iter().any(is_near), "{} has no probe within {reach_m} m", node.position_m);
+        }
+        assert!(found.len() < graph.node_count() && (0..2).all(|cell| found.iter().any(|probe| probe.cell == cell)));
+        for probe in &found {
+            let [even, ..] = probe.sh_w_m2_sr;
+            let bent = DVec3::from_array([1, 2, 3].map(|part| f64::from(probe.sh_w_m2_sr[part]))).length();
+            // The net flux is no more than the scalar irradiance.
+            assert!(even > 0.0 && bent <= 3.0_f64.sqrt() * f64::from(even) && probe.radius_m > 0.0, "{probe:?}");
+        }
+    }
+}

@@ -93,3 +93,65 @@ fn radiance_w_m2_sr(emitter: &Emitter, hit: &Hit) -> f64 {
         _ => 0.0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::network::Quality;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, two_rooms};
+    use crate::guide::places::radiosity_w_m2;
+    use crate::job::{Cancel, Quiet};
+    use crate::light::Settings;
+    use glam::Vec3;
+
+    fn seen<R>(light: Light, look: impl FnOnce(&Network, &[Line]) -> R) -> R {
+        let (_, model) = modelled(&two_rooms(), vec![light], Vec::new());
+        let (network, lines) =
+            Network::new(&model, &Quality::MEDIUM, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        look(&network, &lines)
+    }
+
+    #[test]
+    fn the_mean_of_weight_times_cosine_is_the_irradiance() {
+        seen(lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W), |network, lines| {
+            let sent = radiosity_w_m2(network);
+            let found = samples(network, lines, &sent);
+            let looks: Vec<Sight> = lines.iter().flat_map(|line| sights(line, &sent)).collect();
+            let patches = network.grounds.patches.list.len();
+            assert_eq!(found.len(), looks.len());
+            let (mut means, mut counts) = (vec![0.0; patches], vec![0.0; patches]);
+            for (sample, look) in found.iter().zip(&looks) {
+                assert!(sample.density_per_sr > 0.0 && sample.weight_w_m2 >= 0.0 && sample.flags == 0);
+                means[look.patch as usize] += f64::from(sample.weight_w_m2 * look.cosine());
+                counts[look.patch as usize] += 1.0;
+            }
+            let (mut off, mut all) = (0.0, 0.0);
+            for patch in (0..patches).filter(|&patch| counts[patch] > 0.0) {
+                let seen_m2 = network.exchange.seen_m2[patch];
+                let irradiance_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[patch]).sum();
+                off += (means[patch] / counts[patch] - irradiance_w_m2).abs() * seen_m2;
+                all += irradiance_w_m2 * seen_m2;
+            }
+            // Patches' areas by points and by lines differ a little.
+            assert!(off < 0.03 * all, "{off} W of {all} W lie elsewhere");
+        });
+    }
+
+    #[test]
+    fn bodies_of_light_are_flagged_and_show_their_radiance() {
+        let (flux_w, radius_m) = (FLUX_W, 0.3);
+        let ball = Light::Sphere { centre_m: Vec3::new(2.0, 1.0, 1.5), radius_m, flux_w };
+        seen(ball, |network, lines| {
+            let found = samples(network, lines, &radiosity_w_m2(network));
+            let straight: Vec<_> = found.iter().filter(|sample| sample.flags == DIRECT_LIGHT).collect();
+            assert!(straight.len() > 20, "{}", straight.len());
+            let want_w_m2_sr = flux_w / (4.0 * PI * PI * f64::from(radius_m).powi(2));
+            for sample in straight {
+                let radiance_w_m2_sr = f64::from(sample.weight_w_m2 * sample.density_per_sr);
+                assert!((radiance_w_m2_sr / want_w_m2_sr - 1.0).abs() < 1e-4, "{radiance_w_m2_sr} is not {want_w_m2_sr}");
+                let end_m = sample.position_m + sample.distance_m * sample.direction;
+                assert!((end_m.distance(Vec3::new(2.0, 1.0, 1.5)) - radius_m).abs() < 1e-3);
+            }
+        });
+    }
+}

@@ -68,7 +68,11 @@ impl Shares {
         }
         sums.iter_mut().for_each(|row| normalise(row));
         let nearest = zones.nearest_where(|zone| has[zone as usize]);
-        nearest.into_iter().enumerate().map(|(zone, other)| sums[other.map_or(zone, |other| other as usize)].clone()).collect()
+        nearest
+            .into_iter()
+            .enumerate()
+            .map(|(zone, other)| sums[other.map_or(zone, |other| other as usize)].clone())
+            .collect()
     }
 }
 
@@ -138,8 +142,14 @@ impl Neighbours {
             }
         }
         let mut own_m2 = vec![0.0; patches];
-        network.exchange.pairs.iter().filter(|(i, j, _)| i == j).for_each(|&(i, _, x_m2)| own_m2[i as usize] += x_m2 as f32);
-        let reflectance = |patch: &crate::flow::network::patches::Patch| patch.reflectance.clamp(0.0, MOST_REFLECTANCE) as f32;
+        network
+            .exchange
+            .pairs
+            .iter()
+            .filter(|(i, j, _)| i == j)
+            .for_each(|&(i, _, x_m2)| own_m2[i as usize] += x_m2 as f32);
+        let reflectance =
+            |patch: &crate::flow::network::patches::Patch| patch.reflectance.clamp(0.0, MOST_REFLECTANCE) as f32;
         Self {
             first,
             entries,
@@ -172,8 +182,7 @@ impl Neighbours {
         let keeps_m2 = self.seen_m2[patch] - reflectance * self.own_m2[patch];
         if reflectance > 0.0 && keeps_m2 > 0.0 {
             let seen = self.seen(patch, radiosity);
-            radiosity[patch] =
-                std::array::from_fn(|lane| (landed[patch][lane] + reflectance * seen[lane]) / keeps_m2);
+            radiosity[patch] = std::array::from_fn(|lane| (landed[patch][lane] + reflectance * seen[lane]) / keeps_m2);
         }
     }
 
@@ -185,5 +194,38 @@ impl Neighbours {
             sum.iter_mut().zip(other).for_each(|(sum, radiosity)| *sum += x_m2 * radiosity);
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::network::Quality;
+    use crate::flow::tests::{lamp, modelled, two_rooms};
+    use crate::job::{Cancel, Quiet};
+    use crate::light::Settings;
+    use glam::Vec3;
+
+    #[test]
+    fn shares_are_near_those_of_the_exact_balance() {
+        let lights = [([2.0, 0.5, 1.5], 100.0), ([6.0, 1.0, 0.5], 1e-3), ([7.5, 2.5, 2.5], 40.0), ([1.0, 2.0, 1.0], 0.0)];
+        let lights = lights.map(|(at, flux_w)| lamp(Vec3::from(at), flux_w)).into();
+        let (_, model) = modelled(&two_rooms(), lights, Vec::new());
+        let settings = Settings { shares: true, ..Settings::default() };
+        let (network, _) =
+            Network::new(&model, &Quality::COARSE, &settings, &Quiet, &Cancel::new()).expect("nobody stops it");
+        let found = Shares::new(&network);
+        for patch in (0..network.grounds.patches.list.len()).filter(|&patch| network.exchange.seen_m2[patch] > 0.0) {
+            let exact: Vec<f64> = network.reflected_w_m2.iter().map(|column| column[patch]).collect();
+            let sum: f64 = exact.iter().sum();
+            let row = found.of(patch as u32);
+            assert!((row.iter().sum::<f32>() - 1.0).abs() < 1e-5 || sum == 0.0, "{row:?}");
+            for (share, exact) in row.iter().zip(exact) {
+                assert!((f64::from(*share) - exact / sum).abs() < 0.02, "{row:?} for {:?}", exact / sum);
+            }
+        }
+        for row in found.of_zones(&network) {
+            assert!((row.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{row:?}");
+        }
     }
 }

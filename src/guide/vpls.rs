@@ -63,3 +63,43 @@ fn on_patch<'a>(
         VirtualLight { position_m: start.position_m, normal: start.normal, flux_w, cell }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::network::Quality;
+    use crate::flow::tests::{FLUX_W, lamp, modelled, two_rooms};
+    use crate::guide::places::radiosity_w_m2;
+    use crate::job::{Cancel, Quiet};
+    use crate::light::Settings;
+    use glam::Vec3;
+
+    #[test]
+    fn all_reflected_flux_shines_from_walls_into_rooms_that_it_lights() {
+        let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
+        let (network, _) =
+            Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        let sent = radiosity_w_m2(&network);
+        let all_w: f64 = network.grounds.patches.list.iter().zip(&sent).map(|(patch, sent)| patch.area_m2 * sent).sum();
+        for count in [1, 100, 1000] {
+            let lights = virtual_lights(&network, &sent, count);
+            let sum_w: f64 = lights.iter().map(|light| light.flux_w).sum();
+            assert!((sum_w / all_w - 1.0).abs() < 1e-9, "{count}: {sum_w} W of {all_w} W");
+            assert!(lights.len() <= count + 2 && 2 * lights.len() >= count, "{} for {count}", lights.len());
+            let of = |cell: u32| lights.iter().filter(move |light| light.cell == cell);
+            assert!(of(0).count() > 0 && of(1).count() > 0, "a room has none of {count}");
+            for light in &lights {
+                assert!(light.flux_w > 0.0);
+                // Beside the wall between, the side says which room it is.
+                let is_first = light.position_m.x < 3.85;
+                let is_second = light.position_m.x > 4.15;
+                assert!(!(is_first && light.cell != 0) && !(is_second && light.cell != 1), "{light:?}");
+                let before_m = light.position_m + 0.05 * light.normal;
+                let beyond = before_m.cmplt(Vec3::ZERO).any() || before_m.cmpgt(Vec3::new(8.0, 3.0, 3.0)).any();
+                let within = before_m.x > 3.8 && before_m.x < 4.2 && before_m.y < 2.0;
+                assert!(!beyond && !within, "{light:?} shines into a wall");
+            }
+        }
+        assert!(virtual_lights(&network, &vec![0.0; sent.len()], 100).is_empty());
+    }
+}
