@@ -73,8 +73,8 @@ mod tests {
     #[test]
     fn views_of_a_cube_are_what_quadrature_gives_and_even_light_is_even() {
         let (_, model) = modelled(&room(), vec![lamp(Vec3::new(1.0, 0.5, 1.5), FLUX_W)], Vec::new());
-        let (network, lines) =
-            Network::new(&model, &Quality::FINE, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        let (network, lines) = Network::new(&model, &Quality::FINE, &Settings::default(), &Quiet, &Cancel::new())
+            .expect("nobody stops it");
         let patches = &network.grounds.patches;
         let views = views(&network, &lines, &vec![f64::from(PI); patches.list.len()]);
         for (patch, view) in patches.list.iter().zip(views) {
@@ -84,7 +84,10 @@ mod tests {
             let (mut over, mut count) = (0.0, 0.0);
             for (number, start) in starts.iter().enumerate() {
                 for index in 0..256 {
-                    let towards = sequence::cosine_about(start.normal, sequence::square(index, sequence::offset(9, number as u64)));
+                    let towards = sequence::cosine_about(
+                        start.normal,
+                        sequence::square(index, sequence::offset(9, number as u64)),
+                    );
                     let ahead_m = |axis: usize| {
                         let wall_m = if towards[axis] > 0.0 { 3.0 } else { 0.0 };
                         (wall_m - start.position_m[axis]) / towards[axis]

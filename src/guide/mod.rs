@@ -91,7 +91,7 @@ pub fn guide<'a>(
         staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
     let vpls = vpls::virtual_lights(&network, &radiosity_w_m2, VIRTUAL_LIGHTS);
     progress.begin("probes", 0);
-    let probes = probes::probes(&network, &lines, settings, progress, cancel)?;
+    let probes = probes::probes(&network, settings, progress, cancel)?;
     progress.end();
     let cache = cache::records(&walls, &views);
     let samples = staged("samples", progress, cancel, || samples::samples(&network, &lines, &radiosity_w_m2))?;

@@ -106,8 +106,8 @@ mod tests {
 
     fn seen<R>(light: Light, look: impl FnOnce(&Network, &[Line]) -> R) -> R {
         let (_, model) = modelled(&two_rooms(), vec![light], Vec::new());
-        let (network, lines) =
-            Network::new(&model, &Quality::MEDIUM, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        let (network, lines) = Network::new(&model, &Quality::MEDIUM, &Settings::default(), &Quiet, &Cancel::new())
+            .expect("nobody stops it");
         look(&network, &lines)
     }
 
@@ -148,7 +148,10 @@ mod tests {
             let want_w_m2_sr = flux_w / (4.0 * PI * PI * f64::from(radius_m).powi(2));
             for sample in straight {
                 let radiance_w_m2_sr = f64::from(sample.weight_w_m2 * sample.density_per_sr);
-                assert!((radiance_w_m2_sr / want_w_m2_sr - 1.0).abs() < 1e-4, "{radiance_w_m2_sr} is not {want_w_m2_sr}");
+                assert!(
+                    (radiance_w_m2_sr / want_w_m2_sr - 1.0).abs() < 1e-4,
+                    "{radiance_w_m2_sr} is not {want_w_m2_sr}"
+                );
                 let end_m = sample.position_m + sample.distance_m * sample.direction;
                 assert!((end_m.distance(Vec3::new(2.0, 1.0, 1.5)) - radius_m).abs() < 1e-3);
             }

@@ -208,7 +208,8 @@ mod tests {
 
     #[test]
     fn shares_are_near_those_of_the_exact_balance() {
-        let lights = [([2.0, 0.5, 1.5], 100.0), ([6.0, 1.0, 0.5], 1e-3), ([7.5, 2.5, 2.5], 40.0), ([1.0, 2.0, 1.0], 0.0)];
+        let lights =
+            [([2.0, 0.5, 1.5], 100.0), ([6.0, 1.0, 0.5], 1e-3), ([7.5, 2.5, 2.5], 40.0), ([1.0, 2.0, 1.0], 0.0)];
         let lights = lights.map(|(at, flux_w)| lamp(Vec3::from(at), flux_w)).into();
         let (_, model) = modelled(&two_rooms(), lights, Vec::new());
         let settings = Settings { shares: true, ..Settings::default() };

@@ -77,8 +77,8 @@ mod tests {
     #[test]
     fn all_reflected_flux_shines_from_walls_into_rooms_that_it_lights() {
         let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
-        let (network, _) =
-            Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new()).expect("nobody stops it");
+        let (network, _) = Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new())
+            .expect("nobody stops it");
         let sent = radiosity_w_m2(&network);
         let all_w: f64 = network.grounds.patches.list.iter().zip(&sent).map(|(patch, sent)| patch.area_m2 * sent).sum();
         for count in [1, 100, 1000] {

@@ -94,7 +94,8 @@ fn virtual_lights_carry_all_that_is_reflected() {
     let sent_w: f64 = guide.vpls.iter().map(|light| light.flux_w).sum();
     // A grey room of reflectance rho reflects rho / (1 - rho) of its light in all, if nothing is lost.
     let flux_w = model.sources.flux_w();
-    let mean: f64 = guide.reflectances.iter().map(|&share| f64::from(share)).sum::<f64>() / guide.reflectances.len() as f64;
+    let mean: f64 =
+        guide.reflectances.iter().map(|&share| f64::from(share)).sum::<f64>() / guide.reflectances.len() as f64;
     let want_w = flux_w * mean / (1.0 - mean);
     assert!((sent_w / want_w - 1.0).abs() < 0.05, "{sent_w} W for {want_w} W at reflectance {mean}");
     assert!((900..1200).contains(&guide.vpls.len()), "{}", guide.vpls.len());
@@ -112,7 +113,8 @@ fn a_furnace_is_even_in_every_form() {
         values.sort_by(f32::total_cmp);
         f64::from(values[values.len() / 2])
     };
-    let near = |found: f64, want: f64, what: &str| assert!((found / want - 1.0).abs() < 0.1, "{what}: {found} for {want}");
+    let near =
+        |found: f64, want: f64, what: &str| assert!((found / want - 1.0).abs() < 0.1, "{what}: {found} for {want}");
     near(middle(guide.cache.iter().map(|record| record.reflected_w_m2).collect()), even_w_m2, "walls");
     near(middle(guide.nodes.iter().map(|place| place.incident.reflected_w_m2).collect()), 4.0 * even_w_m2, "nodes");
     let radiance = |sample: &lightvein::guide::TrainingSample| sample.weight_w_m2 * sample.density_per_sr;
