@@ -68,6 +68,7 @@ mod tests {
     use crate::flow::tests::{FLUX_W, lamp, modelled, room};
     use crate::job::{Cancel, Quiet};
     use crate::light::Settings;
+    use glam::Vec3;
     use std::f32::consts::PI;
 
     #[test]
