@@ -19,11 +19,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let model = Model::build(&scene, rays.clone(), scene.model.voxel_m.unwrap_or(0.1), 4_000_000_000, &p, &c)?;
         let t_model = began.elapsed().as_secs_f64();
         let settings = Settings::default();
-        let (network, lines) = Network::new(&model, &Quality::MEDIUM, &settings, &p, &c)?;
+        let mut quality = Quality::MEDIUM;
+        let e = |k: &str, or: f64| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
+        quality.spacing = e("SPACING", 0.4) as f32;
+        quality.lines = e("LINES", 20.0) as u32;
+        quality.all_lines = e("ALL_LINES", 42000.0) as u32;
+        quality.neck_lines = e("NECK", 1024.0) as u32;
+        let (mut network, lines) = Network::new(&model, &quality, &settings, &p, &c)?;
         let t_net = began.elapsed().as_secs_f64();
-        let walls = places::at_walls(&network, &lines);
+        if e("FILL", 1.0) > 0.0 { let grounds = &mut network.grounds; grounds.patches.fill_gaps(&grounds.zones); }
+        let network = network;
+        let walls = { let shine = lightvein::guide::shine::Shine::new(&network); places::at_walls(&network, &shine, &lines) };
         let t_walls = began.elapsed().as_secs_f64();
-        let zones = places::in_zones(&network, &lines, 0);
+        let zones = { let shine = lightvein::guide::shine::Shine::new(&network); places::in_zones(&network, &shine, &lines, 0) };
         let nodes = places::at_nodes(&network, &zones);
         let build = began.elapsed().as_secs_f64();
         let all: Vec<_> = walls.iter().chain(&zones).collect();
@@ -72,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (i, s) in scene.sensors.iter().enumerate().take(400) {
             let equal = vars[0][i] / vars[1][i];
             ratios.push(equal * per[0] / per[1]);
-            if scene.sensors.len() <= 24 {
+            if scene.sensors.len() <= 400 {
                 let reference =
                     scene.reference.get(i).and_then(|r| r.as_ref()).map(|r| r.irradiance_w_m2).unwrap_or(0.0);
                 let r = |k: usize| fields[k].field.readings[i];

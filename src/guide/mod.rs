@@ -15,6 +15,7 @@ pub mod places;
 pub mod probes;
 pub mod samples;
 pub mod shares;
+pub mod shine;
 pub mod sights;
 pub mod vpls;
 pub mod whole;
@@ -25,6 +26,7 @@ use crate::light::{Incident, Settings};
 use crate::model::Model;
 use glam::Vec3;
 use shares::Shares;
+use shine::Shine;
 
 /// Virtual point lights, about.
 const VIRTUAL_LIGHTS: usize = 1024;
@@ -77,24 +79,24 @@ pub fn guide<'a>(
     // The part of each emitter comes by a cheaper way.
     let settings = &Settings { shares: false, ..*settings };
     let (network, lines) = Network::new(model, quality, settings, progress, cancel)?;
-    let radiosity_w_m2 = places::radiosity_w_m2(&network);
-
+    let shine = staged("shine", progress, cancel, || Shine::new(&network))?;
+    let radiosity_w_m2 = shine.means_w_m2();
     let shares = staged("shares", progress, cancel, || Shares::new(&network))?;
     let views = staged("views", progress, cancel, || cache::views(&network, &lines, &radiosity_w_m2))?;
     let walls = staged("walls", progress, cancel, || {
-        whole::walls(&network, places::at_walls(&network, &lines), &shares, &views)
+        whole::walls(&network, places::at_walls(&network, &shine, &lines), &shares, &views)
     })?;
-    let zones = staged("open", progress, cancel, || places::in_zones(&network, &lines, settings.seed))?;
+    let zones = staged("open", progress, cancel, || places::in_zones(&network, &shine, &lines, settings.seed))?;
     let nodes =
         staged("nodes", progress, cancel, || whole::nodes(&network, places::at_nodes(&network, &zones), &shares))?;
     let necks =
         staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
-    let vpls = vpls::virtual_lights(&network, &radiosity_w_m2, VIRTUAL_LIGHTS);
+    let vpls = vpls::virtual_lights(&network, &shine, VIRTUAL_LIGHTS);
     progress.begin("probes", 0);
     let probes = probes::probes(&network, settings, progress, cancel)?;
     progress.end();
     let cache = cache::records(&walls, &views);
-    let samples = staged("samples", progress, cancel, || samples::samples(&network, &lines, &radiosity_w_m2))?;
+    let samples = staged("samples", progress, cancel, || samples::samples(&network, &shine, &lines))?;
 
     let reflectances = network.grounds.patches.list.iter().map(|patch| patch.reflectance as f32).collect();
     let dark = network.lamps().next().is_none().then(|| NO_LIGHT.to_owned());

@@ -6,70 +6,77 @@
 //! (systematic sampling), at the points of the patches.
 
 use super::VirtualLight;
+use super::shine::Shine;
 use crate::flow::network::Network;
-use crate::flow::network::patches::Patch;
+use crate::flow::network::patches::Start;
 
 /// Fewest lights of a room that reflects any light, where there are enough to go round.
 const LEAST_IN_ROOM: usize = 8;
 
-/// About `count` lights whose flux adds up to all that the patches send out. `radiosity_w_m2` is the patches' own.
+/// A point of a wall and what the wall around it sends out.
+struct Source<'a> {
+    start: &'a Start,
+    cell: u32,
+    flux_w: f64,
+}
+
+/// About `count` lights whose flux adds up to all that the patches send out.
 ///
 /// A room's share is rounded, so there may be a light more or less a room; never more lights than points on walls.
-pub fn virtual_lights(network: &Network, radiosity_w_m2: &[f64], count: usize) -> Vec<VirtualLight> {
-    let (patches, zones) = (&network.grounds.patches, &network.grounds.zones);
-    let sent_w: Vec<f64> = patches.list.iter().zip(radiosity_w_m2).map(|(patch, sent)| sent * patch.area_m2).collect();
-    let all_w: f64 = sent_w.iter().sum();
-    let numbers: Vec<usize> = (0..patches.list.len()).collect();
-    let cell = |&patch: &usize| zones.cell(patches.list[patch].zone);
-    // Patches are listed by zone and zones by cell, so a room's are in a row.
-    let rooms: Vec<&[usize]> = numbers.chunk_by(|a, b| cell(a) == cell(b)).collect();
+pub fn virtual_lights(network: &Network, shine: &Shine, count: usize) -> Vec<VirtualLight> {
+    let sources = sources(network, shine);
+    let all_w: f64 = sources.iter().map(|source| source.flux_w).sum();
+    // Patches are listed by zone and zones by cell, so a room's points are in a row.
+    let rooms: Vec<&[Source]> = sources.chunk_by(|a, b| a.cell == b.cell).collect();
     let least = LEAST_IN_ROOM.min(count / (2 * rooms.len()).max(1)).max(1);
     let rest = count.saturating_sub(least * rooms.len()) as f64;
 
     let mut lights = Vec::with_capacity(count + rooms.len());
     for room in rooms {
-        let room_w: f64 = room.iter().map(|&patch| sent_w[patch]).sum();
+        let room_w: f64 = room.iter().map(|source| source.flux_w).sum();
         if !(room_w > 0.0 && room_w.is_finite()) {
             continue;
         }
         let wanted = least + (rest * room_w / all_w).round() as usize;
         let portion_w = room_w / wanted as f64;
         let (mut up_to_w, mut placed) = (0.0, 0);
-        for &number in room {
-            up_to_w += sent_w[number];
-            // Portions whose middle falls to this patch.
+        for &Source { start, cell, flux_w } in room {
+            up_to_w += flux_w;
+            // Portions whose middle falls to this point.
             let begun = ((up_to_w / portion_w + 0.5).floor() as usize).min(wanted);
-            let here = begun.saturating_sub(placed);
-            placed = placed.max(begun);
-            lights.extend(on_patch(network, &patches.list[number], here, portion_w));
+            if begun > placed {
+                let flux_w = (begun - placed) as f64 * portion_w;
+                lights.push(VirtualLight { position_m: start.position_m, normal: start.normal, flux_w, cell });
+                placed = begun;
+            }
         }
     }
     lights
 }
 
-/// So many portions of flux on a patch, joined where it has fewer points.
-fn on_patch<'a>(
-    network: &'a Network,
-    patch: &'a Patch,
-    portions: usize,
-    portion_w: f64,
-) -> impl Iterator<Item = VirtualLight> + 'a {
-    let starts = &network.grounds.patches.starts[patch.starts.clone()];
-    let count = portions.min(starts.len());
-    let flux_w = portion_w * portions as f64 / count.max(1) as f64;
-    let cell = network.grounds.zones.cell(patch.zone);
-    (0..count).map(move |number| {
-        let start = starts[(2 * number + 1) * starts.len() / (2 * count)];
-        VirtualLight { position_m: start.position_m, normal: start.normal, flux_w, cell }
-    })
+/// The points of all patches, a patch's flux shared among its own by how brightly it shines there.
+fn sources<'a>(network: &'a Network, shine: &Shine) -> Vec<Source<'a>> {
+    let patches = &network.grounds.patches;
+    let mut sources = Vec::with_capacity(patches.starts.len());
+    for (number, patch) in patches.list.iter().enumerate() {
+        let patch_w = shine.mean_w_m2(number as u32) * patch.area_m2;
+        let starts = &patches.starts[patch.starts.clone()];
+        let shines: Vec<f64> = starts.iter().map(|start| shine.at_w_m2(number as u32, start.position_m)).collect();
+        let sum: f64 = shines.iter().sum();
+        let cell = network.grounds.zones.cell(patch.zone);
+        let part = |shines: f64| if sum > 0.0 { patch_w * shines / sum } else { 0.0 };
+        let of_patch = starts.iter().zip(&shines).map(|(start, &shines)| Source { start, cell, flux_w: part(shines) });
+        sources.extend(of_patch);
+    }
+    sources
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::flow::network::Quality;
+    use crate::flow::network::patches::Patch;
     use crate::flow::tests::{FLUX_W, lamp, modelled, two_rooms};
-    use crate::guide::places::radiosity_w_m2;
     use crate::job::{Cancel, Quiet};
     use crate::light::Settings;
     use glam::Vec3;
@@ -79,10 +86,15 @@ mod tests {
         let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
         let (network, _) = Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new())
             .expect("nobody stops it");
-        let sent = radiosity_w_m2(&network);
-        let all_w: f64 = network.grounds.patches.list.iter().zip(&sent).map(|(patch, sent)| patch.area_m2 * sent).sum();
+        // What lands and what comes back, by the network's own sums.
+        let sent_w = |patch: usize| {
+            let Patch { reflectance, area_m2, .. } = network.grounds.patches.list[patch];
+            network.landings[0].reflected_w[patch] + reflectance * area_m2 * network.reflected_w_m2[0][patch]
+        };
+        let all_w: f64 = (0..network.grounds.patches.list.len()).map(sent_w).sum();
+        let shine = Shine::new(&network);
         for count in [1, 100, 1000] {
-            let lights = virtual_lights(&network, &sent, count);
+            let lights = virtual_lights(&network, &shine, count);
             let sum_w: f64 = lights.iter().map(|light| light.flux_w).sum();
             assert!((sum_w / all_w - 1.0).abs() < 1e-9, "{count}: {sum_w} W of {all_w} W");
             assert!(lights.len() <= count + 2 && 2 * lights.len() >= count, "{} for {count}", lights.len());
@@ -100,6 +112,5 @@ mod tests {
                 assert!(!beyond && !within, "{light:?} shines into a wall");
             }
         }
-        assert!(virtual_lights(&network, &vec![0.0; sent.len()], 100).is_empty());
     }
 }

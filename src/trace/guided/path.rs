@@ -150,7 +150,7 @@ impl Paths<'_> {
             turns += 1;
             weight *= goes_on;
             let survival = match guided.filter(|_| transmittance <= 0.0) {
-                Some(mixture) => (worth * mixture.reflected_w_m2).clamp(env("LEAST_SURVIVAL", 0.1), env("MOST_SURVIVAL", 0.99)),
+                Some(mixture) => (env("SURV_SCALE", 1.0) * (worth * mixture.reflected_w_m2).powf(env("SURV_POW", 1.0))).clamp(env("LEAST_SURVIVAL", 0.1), env("MOST_SURVIVAL", 0.99)),
                 None if turns > TURNS_BEFORE_ROULETTE => goes_on.min(env("MOST_SURVIVAL", 0.99)),
                 None => 1.0,
             };
