@@ -82,10 +82,9 @@ pub fn guide<'a>(
     let shine = staged("shine", progress, cancel, || Shine::new(&network))?;
     let radiosity_w_m2 = shine.means_w_m2();
     let shares = staged("shares", progress, cancel, || Shares::new(&network))?;
-    let views = staged("views", progress, cancel, || cache::views(&network, &lines, &radiosity_w_m2))?;
-    let walls = staged("walls", progress, cancel, || {
-        whole::walls(&network, places::at_walls(&network, &shine, &lines), &shares, &views)
-    })?;
+    let walls = staged("walls", progress, cancel, || places::at_walls(&network, &shine, &lines))?;
+    let views = staged("views", progress, cancel, || cache::views(&network, &walls, &lines, &radiosity_w_m2))?;
+    let walls = whole::walls(&network, walls, &shares, &views);
     let zones = staged("open", progress, cancel, || places::in_zones(&network, &shine, &lines, settings.seed))?;
     let nodes =
         staged("nodes", progress, cancel, || whole::nodes(&network, places::at_nodes(&network, &zones), &shares))?;

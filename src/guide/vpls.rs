@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn all_reflected_flux_shines_from_walls_into_rooms_that_it_lights() {
         let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
-        let (network, _) = Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new())
+        let (network, _) = Network::new(&model, &Quality::MEDIUM, &Settings::default(), &Quiet, &Cancel::new())
             .expect("nobody stops it");
         // What lands and what comes back, by the network's own sums.
         let sent_w = |patch: usize| {
