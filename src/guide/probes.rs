@@ -2,16 +2,16 @@
 //!
 //! Nodes of the skeleton, those farthest from matter first, and after them the middles of zones, each where no probe of its room
 //! stands within three quarters of the width of the passage there (a greedy cover). Every room has one; every point of the void
-//! has one within about a width. What a probe sees is gathered by rays: scalar irradiance and net flux, which are its spherical
-//! harmonics of orders 0 and 1 (Ramamoorthi & Hanrahan 2001), light straight from emitters included.
+//! has one within about a width. What a probe sees are scalar irradiance and net flux, which are its spherical harmonics of orders 0
+//! and 1 (Ramamoorthi & Hanrahan 2001): of reflected light as the lines through its zone bring it, and straight from emitters.
 
 use super::LightProbe;
-use crate::flow::network::gather::gather;
-use crate::flow::network::{Gather, Network};
+use super::straight::InView;
+use crate::flow::direct::Direct;
+use crate::flow::network::Network;
+use crate::flow::network::read::Tracks;
 use crate::flow::sequence;
-use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Reading, Settings};
-use crate::model::{Model, Probe};
+use crate::model::Model;
 use glam::{DVec3, Vec3};
 use petgraph::graph::NodeIndex;
 use rayon::prelude::*;
@@ -19,9 +19,6 @@ use std::f64::consts::PI;
 
 /// How far a probe speaks for the void around it, in half-widths of the passage: rooms as high as wide have one to a few.
 const REACH: f32 = 1.5;
-
-/// The rays of a probe: orders 0 and 1 need few.
-const RAYS: Gather = Gather { rays: 128, neck_rays: 16 };
 
 /// Directions, besides those of the axes, in which the nearest wall is looked for from the middle of a zone.
 const LOOKS: u32 = 64;
@@ -38,30 +35,23 @@ struct Candidate {
     radius_m: Option<f32>,
 }
 
-/// Probes for all rooms, room by room.
-///
-/// # Errors
-/// [`Cancelled`] when `cancel` was raised.
-pub fn probes(
-    network: &Network,
-    settings: &Settings,
-    progress: &dyn Progress,
-    cancel: &Cancel,
-) -> Result<Vec<LightProbe>, Cancelled> {
+/// Probes for all rooms, room by room, in a field whose reflected part `tracks` have in one column.
+pub fn probes(network: &Network, tracks: &Tracks, in_view: &InView) -> Vec<LightProbe> {
     let model = network.grounds.model;
-    let chosen = cover(model, candidates(network));
-    let asked: Vec<Probe> = chosen
-        .iter()
-        .map(|candidate| Probe { position_m: candidate.position_m, normal: None, place: Ok(candidate.node) })
-        .collect();
-    let field = gather(network, &RAYS, &asked, settings, progress, cancel)?;
-    let probe = |(candidate, reading): (&Candidate, &Reading)| LightProbe {
-        position_m: candidate.position_m,
-        radius_m: candidate.radius_m.unwrap_or_else(|| nearest_wall_m(model, candidate.position_m)),
-        cell: candidate.cell,
-        sh_w_m2_sr: harmonics(reading.value_w_m2, reading.flux_w_m2),
+    let probe = |(number, candidate): (usize, Candidate)| {
+        let Candidate { position_m, node, cell, radius_m, .. } = candidate;
+        let zone = network.grounds.zones.at(node.index() as u32, position_m);
+        let Direct { mut value_w_m2, mut flux_w_m2 } = tracks.reflected(1, zone, position_m);
+        // Numbers of their own, after those of the nodes.
+        let number = (model.skeleton.graph.node_count() + number) as u64;
+        for (_, straight) in in_view.at(network, zone, position_m, number) {
+            value_w_m2 += straight.value_w_m2;
+            flux_w_m2 += straight.flux_w_m2;
+        }
+        let radius_m = radius_m.unwrap_or_else(|| nearest_wall_m(model, position_m));
+        LightProbe { position_m, radius_m, cell, sh_w_m2_sr: harmonics(value_w_m2, flux_w_m2) }
     };
-    Ok(chosen.par_iter().zip(&field.readings).map(probe).collect())
+    cover(model, candidates(network)).into_par_iter().enumerate().map(probe).collect()
 }
 
 /// Spherical harmonics (0,0), (1,-1), (1,0), (1,1) of a radiance with that scalar irradiance and net flux, W/m2/sr: projections
@@ -120,7 +110,9 @@ mod tests {
     use super::*;
     use crate::flow::network::Quality;
     use crate::flow::tests::{FLUX_W, lamp, modelled, two_rooms};
-    use crate::job::Quiet;
+    use crate::guide::shine::Shine;
+    use crate::job::{Cancel, Quiet};
+    use crate::light::Settings;
 
     #[test]
     fn harmonics_of_even_and_of_narrow_light_are_the_closed_forms() {
@@ -137,10 +129,10 @@ mod tests {
     #[test]
     fn every_room_has_probes_and_every_node_one_near() {
         let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
-        let never = Cancel::new();
-        let (network, _) =
-            Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &never).expect("nobody stops it");
-        let found = probes(&network, &Settings::default(), &Quiet, &never).expect("nobody stops it");
+        let (network, lines) = Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new())
+            .expect("nobody stops it");
+        let tracks = Tracks::new(&network.grounds, &lines, &[Shine::new(&network).means_w_m2()], 1, 0);
+        let found = probes(&network, &tracks, &InView::new(&network, 0));
         let graph = &model.skeleton.graph;
         // Both rooms are 3 m high and no wider than 4 m, the door 1 m.
         for node in graph.node_weights() {

@@ -3,7 +3,9 @@
 use super::Place;
 use super::cache::View;
 use super::shares::{Shares, of_all};
+use super::straight::InView;
 use crate::flow::network::Network;
+use crate::flow::network::read::Tracks;
 use crate::light::Incident;
 use petgraph::graph::NodeIndex;
 use rayon::prelude::*;
@@ -33,16 +35,29 @@ pub fn walls(network: &Network, incident: Vec<Incident>, shares: &Shares, views:
     incident.into_par_iter().enumerate().map(place).collect()
 }
 
-/// The places at all nodes, whose light that is.
-pub fn nodes(network: &Network, incident: Vec<Incident>, shares: &Shares) -> Vec<Place> {
-    let (model, of_zones) = (network.grounds.model, shares.of_zones(network));
-    let place = |(node, incident): (usize, Incident)| {
-        let zone = network.grounds.zones.at(node as u32, incident.position_m) as usize;
-        let row = of_zones.get(zone).map(Vec::as_slice).unwrap_or_default();
+/// The places at all nodes: lobes as `incident` has them, light as the zones' `tracks` (of one column) and rays to the emitters in
+/// view have it there.
+pub fn nodes(
+    network: &Network,
+    incident: Vec<Incident>,
+    tracks: &Tracks,
+    in_view: &InView,
+    shares: &Shares,
+) -> Vec<Place> {
+    let (grounds, of_zones) = (&network.grounds, shares.of_zones(network));
+    let emitters = grounds.model.sources.emitters.len();
+    let place = |(node, mut incident): (usize, Incident)| {
+        let zone = grounds.zones.at(node as u32, incident.position_m);
+        incident.reflected_w_m2 = tracks.reflected(1, zone, incident.position_m).value_w_m2 as f32;
+        incident.direct_w_m2 = vec![0.0; emitters];
+        for (emitter, straight) in in_view.at(network, zone, incident.position_m, node as u64) {
+            incident.direct_w_m2[emitter] = straight.value_w_m2 as f32;
+        }
+        let row = of_zones.get(zone as usize).map(Vec::as_slice).unwrap_or_default();
         Place {
             scalar_w_m2: incident.reflected_w_m2 + incident.direct_w_m2.iter().sum::<f32>(),
             shares: of_all(&incident.direct_w_m2, incident.reflected_w_m2, row),
-            cell: model.skeleton.graph.node_weight(NodeIndex::new(node)).map_or(u32::MAX, |node| node.cell),
+            cell: grounds.model.skeleton.graph.node_weight(NodeIndex::new(node)).map_or(u32::MAX, |node| node.cell),
             incident,
         }
     };
