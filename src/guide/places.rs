@@ -8,9 +8,10 @@
 use super::fit::{self, Sample};
 use super::shine::Shine;
 use crate::flow::direct::direct;
-use crate::flow::network::Network;
+use crate::flow::network::gather::{self};
 use crate::flow::network::lines::Line;
 use crate::flow::network::walk::End;
+use crate::flow::network::{Gather, Network};
 use crate::flow::sequence;
 use crate::light::Incident;
 use glam::{DVec3, Vec3};
@@ -69,9 +70,12 @@ pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Inciden
         turn(own, position_m, Some(normal), 1.0 / patch.area_m2, &mut samples);
         for zone in grounds.zones.beside(patch.zone, 1).take(MOST_BESIDE) {
             let beside = starts.first().and_then(|start| patches.like(zone, normal, start.answer));
-            let Some(beside) = beside.map(|beside| beside as usize).filter(|&beside| beside != number) else { continue };
+            let Some(beside) = beside.map(|beside| beside as usize).filter(|&beside| beside != number) else {
+                continue;
+            };
             let other = &patches.list[beside];
-            let is_alike = patches.starts.get(other.starts.start).is_some_and(|start| start.normal.dot(normal) > ALIKE_FROM);
+            let is_alike =
+                patches.starts.get(other.starts.start).is_some_and(|start| start.normal.dot(normal) > ALIKE_FROM);
             if other.zone == zone && is_alike {
                 turn(&sights[beside], position_m, Some(normal), BESIDE_COUNTS / other.area_m2, &mut samples);
             }
@@ -87,6 +91,38 @@ pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Inciden
         }
     };
     sights.par_iter().enumerate().map(incident).collect()
+}
+
+/// The light at a point of a cell, on a surface of that normal or in the open, by rays of its own: where one place is worth as
+/// much, a sensor or a pixel.
+pub fn at_point(
+    network: &Network,
+    shine: &Shine,
+    rays: &Gather,
+    from_m: Vec3,
+    normal: Option<Vec3>,
+    cell: u32,
+    offset: [f64; 2],
+) -> Incident {
+    let mut samples = Vec::new();
+    let mut reflected_w_m2 = 0.0;
+    for sight in gather::sights(network, rays, from_m, normal, cell, offset) {
+        let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
+        let sends_w_m2 = shine.at_w_m2(sight.patch, sight.at.position_m);
+        let weight = sight.weight * cosine * sends_w_m2;
+        reflected_w_m2 += weight;
+        if weight > 0.0 {
+            let distance_m = sight.at.position_m.distance(from_m);
+            samples.push(Sample { direction: sight.direction, weight: weight as f32, distance_m });
+        }
+    }
+    Incident {
+        position_m: from_m,
+        normal,
+        lobes: fit::lobes(&samples),
+        reflected_w_m2: reflected_w_m2 as f32,
+        direct_w_m2: Vec::new(),
+    }
 }
 
 /// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
