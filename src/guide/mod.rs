@@ -17,9 +17,11 @@ pub mod samples;
 pub mod shares;
 pub mod shine;
 pub mod sights;
+pub mod straight;
 pub mod vpls;
 pub mod whole;
 
+use crate::flow::network::read::Tracks;
 use crate::flow::network::{Grounds, Network, Quality};
 use crate::job::{Cancel, Cancelled, Progress};
 use crate::light::{Incident, Settings};
@@ -27,6 +29,7 @@ use crate::model::Model;
 use glam::Vec3;
 use shares::Shares;
 use shine::Shine;
+use straight::InView;
 
 /// Virtual point lights, about.
 const VIRTUAL_LIGHTS: usize = 1024;
@@ -86,14 +89,17 @@ pub fn guide<'a>(
     let views = staged("views", progress, cancel, || cache::views(&network, &walls, &lines, &radiosity_w_m2))?;
     let walls = whole::walls(&network, walls, &shares, &views);
     let zones = staged("open", progress, cancel, || places::in_zones(&network, &shine, &lines, settings.seed))?;
-    let nodes =
-        staged("nodes", progress, cancel, || whole::nodes(&network, places::at_nodes(&network, &zones), &shares))?;
+    let tracks = staged("tracks", progress, cancel, || {
+        Tracks::new(&network.grounds, &lines, std::slice::from_ref(&radiosity_w_m2), 1, settings.seed)
+    })?;
+    let in_view = InView::new(&network, settings.seed);
+    let nodes = staged("nodes", progress, cancel, || {
+        whole::nodes(&network, places::at_nodes(&network, &zones), &tracks, &in_view, &shares)
+    })?;
+    let probes = staged("probes", progress, cancel, || probes::probes(&network, &tracks, &in_view))?;
     let necks =
         staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
     let vpls = vpls::virtual_lights(&network, &shine, VIRTUAL_LIGHTS);
-    progress.begin("probes", 0);
-    let probes = probes::probes(&network, settings, progress, cancel)?;
-    progress.end();
     let cache = cache::records(&walls, &views);
     let samples = staged("samples", progress, cancel, || samples::samples(&network, &shine, &lines))?;
 

@@ -7,7 +7,7 @@
 
 use super::fit::{self, Sample};
 use super::shine::Shine;
-use crate::flow::direct::direct;
+use super::straight::InView;
 use crate::flow::network::gather::{self};
 use crate::flow::network::lines::Line;
 use crate::flow::network::walk::End;
@@ -130,6 +130,7 @@ pub fn at_point(
 pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> Vec<Incident> {
     let grounds = &network.grounds;
     let (model, zones) = (grounds.model, &grounds.zones);
+    let in_view = InView::new(network, seed);
     // One place a line, anywhere on it, stands for its whole length.
     let place = |(number, line): (usize, &Line)| {
         let along_m = sequence::offset(seed, POINT_OFFSETS + number as u64)[0] as f32 * line.length_m;
@@ -157,11 +158,11 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
     let incident = |(zone, crossed): (usize, &Crossed)| {
         let track_m3 = crossed.track_m3.max(f64::MIN_POSITIVE);
         let position_m = (crossed.moment / track_m3).as_vec3();
-        let straight = |emitter: usize| {
-            let offset = sequence::offset(seed, SHADOW_OFFSETS + zone as u64);
-            direct(model, position_m, None, emitter, 1, offset).value_w_m2 as f32
-        };
-        let is_seen = crossed.track_m3 > 0.0;
+        let mut direct_w_m2 = vec![0.0; model.sources.emitters.len()];
+        if crossed.track_m3 > 0.0 {
+            let straight = in_view.at(network, zone as u32, position_m, SHADOW_OFFSETS + zone as u64);
+            straight.iter().for_each(|(emitter, straight)| direct_w_m2[*emitter] = straight.value_w_m2 as f32);
+        }
         let mut samples = Vec::new();
         turn(&crossed.sights, position_m, None, 1.0, &mut samples);
         Incident {
@@ -169,9 +170,7 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
             normal: None,
             lobes: fit::lobes(&samples),
             reflected_w_m2: (2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3) as f32,
-            direct_w_m2: (0..model.sources.emitters.len())
-                .map(|emitter| if is_seen { straight(emitter) } else { 0.0 })
-                .collect(),
+            direct_w_m2,
         }
     };
     crossed.par_iter().enumerate().map(incident).collect()

@@ -4,7 +4,7 @@ use super::modelled::{model, scene};
 use super::program::{json, lightvein, run, text};
 use glam::Vec3;
 use lightvein::export::guide::{Guided, files};
-use lightvein::flow::network::Quality;
+use lightvein::flow::network::{self, Quality};
 use lightvein::guide::{Guide, Seeded, guide};
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::{MOST_LOBES, Settings};
@@ -116,13 +116,30 @@ fn a_furnace_is_even_in_every_form() {
     let near =
         |found: f64, want: f64, what: &str| assert!((found / want - 1.0).abs() < 0.1, "{what}: {found} for {want}");
     near(middle(guide.cache.iter().map(|record| record.reflected_w_m2).collect()), even_w_m2, "walls");
-    near(middle(guide.nodes.iter().map(|place| place.incident.reflected_w_m2).collect()), 4.0 * even_w_m2, "nodes");
+    // The room's middle is nearer to the bright spots than its walls are.
+    let scalar_w_m2 = middle(guide.nodes.iter().map(|place| place.incident.reflected_w_m2).collect());
+    assert!((1.0..1.2).contains(&(scalar_w_m2 / (4.0 * even_w_m2))), "{scalar_w_m2} for {even_w_m2}");
     let radiance = |sample: &lightvein::guide::TrainingSample| sample.weight_w_m2 * sample.density_per_sr;
     let reflected = guide.samples.iter().filter(|sample| sample.flags == 0);
     // What walls send out has the direct light too, once.
     let sent_w_m2_sr = model.sources.flux_w() / model.walls.area_m2() * reflectance / (1.0 - reflectance) / PI;
     let mean = reflected.clone().map(|sample| f64::from(radiance(sample))).sum::<f64>() / reflected.count() as f64;
     near(mean, sent_w_m2_sr, "samples");
+}
+
+/// The network, asked at the nodes for all light, says what the guide says of them.
+#[test]
+fn nodes_have_the_light_that_the_network_reads_there() {
+    let scene = scene("gallery");
+    let model = model(&scene);
+    let found = seeded(&model).guide.nodes;
+    let read = network::with(Quality::MEDIUM.read());
+    let wanted = read(&model, &model.probes_at_nodes(), &Settings::default(), &Quiet, &Cancel::new()).unwrap();
+    let mut off = 0.0;
+    for (place, reading) in found.iter().zip(&wanted.readings) {
+        off += (f64::from(place.scalar_w_m2) / reading.value_w_m2).ln().powi(2) / found.len() as f64;
+    }
+    assert!(off.sqrt() < 0.05, "rms factor {}", off.sqrt().exp());
 }
 
 #[test]
@@ -187,7 +204,8 @@ fn the_files_are_what_the_document_says() {
         let area = outline.iter().zip(next).map(|(a, b)| 0.5 * (a - middle_m).cross(b - middle_m)).sum::<Vec3>();
         assert!((area.length() / neck.area_m2 - 1.0).abs() < 1e-3 && neck.flux_w.iter().all(|flux_w| *flux_w > 0.0));
         assert_eq!(found["outline"].as_array().unwrap().len(), outline.len());
-        assert_eq!(found["flux_w"][1].as_f64(), Some(neck.flux_w[1]));
+        // The reader of JSON is right to the last digit but one.
+        assert!((found["flux_w"][1].as_f64().unwrap() / neck.flux_w[1] - 1.0).abs() < 1e-12);
     }
 
     // The user's own coordinates, and the values of the structures.
