@@ -279,8 +279,10 @@ fn streams_that_close_early_are_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     // A scene that is warned of.
     let scene = house(folder.path(), "");
-    for arguments in [["analyse", &scene], ["compare", &scene], ["trace", &scene]] {
-        let mut child = lightvein(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let out = folder.path().join("out");
+    let guide = ["guide", &scene, "-o", out.to_str().unwrap()];
+    for arguments in [&["analyse", &scene][..], &["compare", &scene], &["trace", &scene], &guide] {
+        let mut child = lightvein(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop((child.stdout.take(), child.stderr.take()));
         assert_eq!(child.wait().unwrap().code(), Some(0), "{arguments:?}");
     }
