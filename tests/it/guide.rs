@@ -15,6 +15,7 @@ use ndarray_npy::ReadNpyExt;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
+use std::path::Path;
 
 const ALL_FILES: [&str; 13] = [
     "cache.csv",
@@ -280,6 +281,42 @@ fn wrong_usage_and_bad_input_leave_nothing() {
     refused(&["guide", "scenes/gallery/gallery.toml", "--tolerance", "2", "-o", path], 2, "--tolerance");
 }
 
+/// Real meshes: open ones, ones with slivers, and 78 lamps.
+#[test]
+fn real_scenes_have_finite_seeds_in_every_room() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (name, mesh) in [("quake_dm4", "quake/dm4_solid.obj"), ("cornell_original", "cornell/CornellBox-Original.obj")]
+    {
+        if !root.join("../shared/data").join(mesh).exists() {
+            println!("skipped: ../shared/data/{mesh} is not there");
+            continue;
+        }
+        let path = root.join(format!("scenes/real/{name}.toml"));
+        let scene = Scene::load(&path, &Quiet, &Cancel::new()).unwrap();
+        let model = model(&scene);
+        let guide = guide(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new()).unwrap().guide;
+        for cell in 0..model.skeleton.cells.len() as u32 {
+            assert!(guide.walls.iter().any(|place| place.cell == cell), "{name}: no wall point in {cell}");
+            assert!(guide.probes.iter().any(|probe| probe.cell == cell), "{name}: no probe in {cell}");
+        }
+        let numbers = (guide.walls.iter().chain(&guide.nodes))
+            .flat_map(|place| [place.scalar_w_m2, place.incident.reflected_w_m2])
+            .chain(guide.cache.iter().flat_map(|record| [record.irradiance_w_m2, record.radius_m]))
+            .chain(guide.probes.iter().flat_map(|probe| probe.sh_w_m2_sr.into_iter().take(1)))
+            .chain(guide.samples.iter().flat_map(|sample| [sample.weight_w_m2, sample.density_per_sr]))
+            .chain(guide.vpls.iter().map(|light| light.flux_w as f32))
+            .chain(guide.necks.iter().flat_map(|neck| neck.flux_w.map(|flux_w| flux_w as f32)));
+        for (number, found) in numbers.enumerate() {
+            assert!(found.is_finite() && found >= 0.0, "{name}: number {number} is {found}");
+        }
+        // More is reflected than lands at first, less than if nothing were lost.
+        let mean = guide.reflectances.iter().sum::<f32>() / guide.reflectances.len() as f32;
+        let sent_w: f64 = guide.vpls.iter().map(|light| light.flux_w).sum();
+        let most_w = model.sources.flux_w() * f64::from(mean / (1.0 - mean)) * 1.1;
+        assert!(sent_w > 0.0 && sent_w < most_w, "{name}: {sent_w} W of {most_w} W");
+    }
+}
+
 /// A box without a light, then as a bare mesh, which is lit.
 #[test]
 fn a_scene_without_light_is_told_and_a_bare_mesh_is_lit() {
@@ -296,7 +333,7 @@ fn a_scene_without_light_is_told_and_a_bare_mesh_is_lit() {
     fs::write(&bare, mesh).unwrap();
     fs::write(&dark, "[model]\nvoxel_m = 0.1\n[geometry]\nmeshes = [\"box.obj\"]\n").unwrap();
     let out = folder.path().join("out");
-    let flux_w = |scene: &std::path::Path| {
+    let flux_w = |scene: &Path| {
         let (report, stderr) = json(&["guide", scene.to_str().unwrap(), "-o", out.to_str().unwrap()]);
         assert!(report["nodes"].as_u64().unwrap() > 0, "{report}");
         let table = fs::read_to_string(out.join("cache.csv")).unwrap();
