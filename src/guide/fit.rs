@@ -6,16 +6,19 @@
 //!
 //! Limits: a local optimum from a start that is always the same, the samples farthest from those before.
 
-use crate::light::{Lobe, MOST_LOBES};
+use crate::light::{Incident, Lobe, MOST_LOBES};
 use glam::{DVec3, Vec3};
+use std::f32::consts::FRAC_1_PI;
 
 /// Light that comes from a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Where it comes from, unit length.
     pub direction: Vec3,
-    /// How much it is.
+    /// How much it is: what it adds to the irradiance.
     pub weight: f32,
+    /// How much comes per steradian (radiance, times the cosine on a surface), in any unit: what its density should follow.
+    pub density: f32,
     /// How far away what shines stands, metres.
     pub distance_m: f32,
 }
@@ -32,6 +35,12 @@ const PRIOR_COSINE: f64 = 0.5;
 
 /// No lobe is narrower: half of the light within 2 degrees.
 const MOST_CONCENTRATION: f64 = 1000.0;
+
+/// Shares that are tried: never all, for lobes leave out what they do not know.
+const TRUSTS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
+
+/// Densities below the exponential of this, per steradian, are taken for nothing.
+const LEAST_LOGARITHM: f32 = -14.0;
 
 /// A lobe with less than this share is given up.
 const LEAST_SHARE: f64 = 0.01;
@@ -53,6 +62,35 @@ pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
     mixture.iter_mut().for_each(|lobe| lobe.weight /= kept);
     mixture.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     mixture
+}
+
+/// The share of directions that is best drawn from the lobes and not from the cosine about the normal (or evenly): that with the
+/// least second moment of `density / drawn density`, by the samples that the lobes were fitted to.
+pub fn trust(samples: &[Sample], incident: &Incident) -> f32 {
+    if incident.lobes.is_empty() {
+        return 0.0;
+    }
+    let heights = heights(&incident.lobes);
+    let mut moments = [0.0_f64; TRUSTS.len()];
+    for sample in samples {
+        let towards = sample.direction;
+        // As `Incident::density_per_sr` has it.
+        let by_lobes = match incident.normal {
+            Some(normal) => {
+                density(&incident.lobes, &heights, towards)
+                    + density(&incident.lobes, &heights, towards - 2.0 * normal.dot(towards) * normal)
+            }
+            None => density(&incident.lobes, &heights, towards),
+        };
+        let plainly = incident.normal.map_or(0.25, |normal| normal.dot(towards).max(0.0)) * FRAC_1_PI;
+        let amount = f64::from(sample.weight) * f64::from(sample.density);
+        for (moment, trust) in moments.iter_mut().zip(TRUSTS) {
+            let trust = trust as f32;
+            *moment += amount / f64::from((trust * by_lobes + (1.0 - trust) * plainly).max(f32::MIN_POSITIVE));
+        }
+    }
+    let best = (0..TRUSTS.len()).min_by(|&a, &b| moments[a].total_cmp(&moments[b]));
+    best.map_or(0.0, |best| TRUSTS[best] as f32)
 }
 
 /// Lobes about the sample with most weight and those that are heaviest away from the ones before.
@@ -77,13 +115,28 @@ fn first(samples: &[Sample], sum: f64) -> Vec<Lobe> {
     lobes
 }
 
-/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
-/// single precision, for this is most of what a guide costs.
-fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+/// The logarithm of each lobe's share times its density where that is greatest.
+fn heights(lobes: &[Lobe]) -> [f32; MOST_LOBES] {
     let mut heights = [f32::NEG_INFINITY; MOST_LOBES];
     for (height, lobe) in heights.iter_mut().zip(lobes) {
         *height = (f64::from(lobe.weight) * lobe.density_per_sr(lobe.direction)).ln() as f32;
     }
+    heights
+}
+
+/// The density of some lobes together, per steradian; what is below a millionth per steradian is not counted.
+fn density(lobes: &[Lobe], heights: &[f32; MOST_LOBES], towards: Vec3) -> f32 {
+    let of = |(lobe, height): (&Lobe, &f32)| {
+        let logarithm = height + lobe.concentration * (lobe.direction.dot(towards) - 1.0);
+        if logarithm > LEAST_LOGARITHM { logarithm.exp() } else { 0.0 }
+    };
+    lobes.iter().zip(heights).map(of).sum()
+}
+
+/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
+/// single precision, for this is most of what a guide costs.
+fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+    let heights = heights(lobes);
     for (sample, shares) in samples.iter().zip(shares) {
         let mut parts = heights;
         for (part, lobe) in parts.iter_mut().zip(lobes) {
@@ -141,7 +194,7 @@ mod tests {
             .map(|index| {
                 let lobe = known[usize::from(index % 10 >= 6)];
                 let square = [(f64::from(index) * 0.754_878).fract(), (f64::from(index) * 0.569_840).fract()];
-                Sample { direction: lobe.drawn(square), weight: 2.0, distance_m: lobe.distance_m }
+                Sample { direction: lobe.drawn(square), weight: 2.0, density: 1.0, distance_m: lobe.distance_m }
             })
             .collect();
         let found = lobes(&samples);
@@ -161,7 +214,7 @@ mod tests {
     #[test]
     fn without_light_there_is_no_lobe_and_one_sample_is_one() {
         assert_eq!(lobes(&[]), []);
-        let sample = Sample { direction: Vec3::X, weight: 0.0, distance_m: 1.0 };
+        let sample = Sample { direction: Vec3::X, weight: 0.0, density: 1.0, distance_m: 1.0 };
         assert_eq!(lobes(&[sample]), []);
         let found = lobes(&[Sample { weight: 3.0, ..sample }]);
         assert_eq!(found.len(), 1);
