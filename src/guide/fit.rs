@@ -23,6 +23,9 @@ pub struct Sample {
     pub distance_m: f32,
 }
 
+/// Samples that are enough for a place: more would sharpen what four round lobes blur.
+const ENOUGH_SAMPLES: usize = 160;
+
 /// Steps of expectation and maximisation; later ones move lobes by less than their width.
 const STEPS: usize = 6;
 
@@ -42,6 +45,27 @@ const TRUSTS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
 /// A lobe with less than this share is given up.
 const LEAST_SHARE: f64 = 0.01;
 
+/// At most so many samples as are enough for a few lobes, all of the same weight and in the same sum, drawn evenly along the sum
+/// of weights; as they are where they are few.
+pub fn thinned(samples: Vec<Sample>) -> Vec<Sample> {
+    if samples.len() <= ENOUGH_SAMPLES {
+        return samples;
+    }
+    let sum: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
+    let share = sum / ENOUGH_SAMPLES as f64;
+    let mut up_to = 0.0;
+    let mut next = 0.5 * share;
+    let mut kept = Vec::with_capacity(ENOUGH_SAMPLES);
+    for sample in &samples {
+        up_to += f64::from(sample.weight);
+        while next < up_to && kept.len() < ENOUGH_SAMPLES {
+            kept.push(Sample { weight: share as f32, ..*sample });
+            next += share;
+        }
+    }
+    kept
+}
+
 /// At most [`MOST_LOBES`] lobes for some samples, the heaviest first; none where no sample has weight. Linear in the samples.
 pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
     let sum: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
@@ -49,7 +73,7 @@ pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
         return Vec::new();
     }
     let mut mixture = first(samples, sum);
-    let mut shares = vec![[0.0; MOST_LOBES]; samples.len()];
+    let mut shares = vec![[0.0_f32; MOST_LOBES]; samples.len()];
     for _ in 0..STEPS {
         expect(samples, &mixture, &mut shares);
         maximise(samples, sum, &shares, &mut mixture);
@@ -103,31 +127,30 @@ fn first(samples: &[Sample], sum: f64) -> Vec<Lobe> {
     lobes
 }
 
-/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
-/// single precision, for this is most of what a guide costs.
-fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
-    let mut heights = [f32::NEG_INFINITY; MOST_LOBES];
-    for (height, lobe) in heights.iter_mut().zip(lobes) {
-        *height = (f64::from(lobe.weight) * lobe.density_per_sr(lobe.direction)).ln() as f32;
+/// The share of each lobe in each sample.
+fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f32; MOST_LOBES]]) {
+    // Densities in f32, and what belongs to the lobe alone worked out once: this is where the time goes.
+    let mut scaled = [(Vec3::Z, 0.0_f32, 0.0_f32); MOST_LOBES];
+    for (scaled, lobe) in scaled.iter_mut().zip(lobes) {
+        let peak_per_sr = lobe.density_per_sr(lobe.direction) as f32;
+        *scaled = (lobe.direction, lobe.concentration, lobe.weight * peak_per_sr);
     }
     for (sample, shares) in samples.iter().zip(shares) {
-        let mut parts = heights;
-        for (part, lobe) in parts.iter_mut().zip(lobes) {
-            *part += lobe.concentration * (lobe.direction.dot(sample.direction) - 1.0);
+        for (share, &(direction, concentration, factor)) in shares.iter_mut().zip(&scaled) {
+            *share = factor * (concentration * (direction.dot(sample.direction) - 1.0)).exp();
         }
-        let highest = parts.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let parts = parts.map(|part| if part > f32::NEG_INFINITY { (part - highest).exp() } else { 0.0 });
-        let sum: f32 = parts.iter().sum();
-        *shares = parts.map(|part| if sum > 0.0 { f64::from(part / sum) } else { 0.0 });
+        let sum: f32 = shares.iter().sum();
+        let scale = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        shares.iter_mut().for_each(|share| *share *= scale);
     }
 }
 
 /// The lobes that suit those shares best.
-fn maximise(samples: &[Sample], sum: f64, shares: &[[f64; MOST_LOBES]], lobes: &mut [Lobe]) {
+fn maximise(samples: &[Sample], sum: f64, shares: &[[f32; MOST_LOBES]], lobes: &mut [Lobe]) {
     for (number, lobe) in lobes.iter_mut().enumerate() {
         let (mut weight, mut squares, mut mean, mut nearness) = (0.0, 0.0, DVec3::ZERO, 0.0);
         for (sample, shares) in samples.iter().zip(shares) {
-            let part = f64::from(sample.weight) * shares[number];
+            let part = f64::from(sample.weight * shares[number]);
             weight += part;
             squares += part * part;
             mean += part * sample.direction.as_dvec3();
