@@ -8,7 +8,7 @@
 
 use crate::light::{Incident, Lobe, MOST_LOBES};
 use glam::{DVec3, Vec3};
-use std::f64::consts::PI;
+use std::f32::consts::FRAC_1_PI;
 
 /// Light that comes from a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +42,9 @@ const MOST_CONCENTRATION: f64 = 1000.0;
 /// Shares that are tried: never all, for lobes leave out what they do not know.
 const TRUSTS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
 
+/// Densities below the exponential of this, per steradian, are taken for nothing.
+const LEAST_LOGARITHM: f32 = -14.0;
+
 /// A lobe with less than this share is given up.
 const LEAST_SHARE: f64 = 0.01;
 
@@ -53,8 +56,7 @@ pub fn thinned(samples: Vec<Sample>) -> Vec<Sample> {
     }
     let sum: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
     let share = sum / ENOUGH_SAMPLES as f64;
-    let mut up_to = 0.0;
-    let mut next = 0.5 * share;
+    let (mut up_to, mut next) = (0.0, 0.5 * share);
     let mut kept = Vec::with_capacity(ENOUGH_SAMPLES);
     for sample in &samples {
         up_to += f64::from(sample.weight);
@@ -73,7 +75,7 @@ pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
         return Vec::new();
     }
     let mut mixture = first(samples, sum);
-    let mut shares = vec![[0.0_f32; MOST_LOBES]; samples.len()];
+    let mut shares = vec![[0.0; MOST_LOBES]; samples.len()];
     for _ in 0..STEPS {
         expect(samples, &mixture, &mut shares);
         maximise(samples, sum, &shares, &mut mixture);
@@ -91,14 +93,23 @@ pub fn trust(samples: &[Sample], incident: &Incident) -> f32 {
     if incident.lobes.is_empty() {
         return 0.0;
     }
-    let mut moments = [0.0; TRUSTS.len()];
+    let heights = heights(&incident.lobes);
+    let mut moments = [0.0_f64; TRUSTS.len()];
     for sample in samples {
-        let by_lobes = incident.density_per_sr(sample.direction);
-        let plainly =
-            incident.normal.map_or(1.0 / (4.0 * PI), |normal| f64::from(normal.dot(sample.direction).max(0.0)) / PI);
+        let towards = sample.direction;
+        // As `Incident::density_per_sr` has it.
+        let by_lobes = match incident.normal {
+            Some(normal) => {
+                density(&incident.lobes, &heights, towards)
+                    + density(&incident.lobes, &heights, towards - 2.0 * normal.dot(towards) * normal)
+            }
+            None => density(&incident.lobes, &heights, towards),
+        };
+        let plainly = incident.normal.map_or(0.25, |normal| normal.dot(towards).max(0.0)) * FRAC_1_PI;
         let amount = f64::from(sample.weight) * f64::from(sample.density);
         for (moment, trust) in moments.iter_mut().zip(TRUSTS) {
-            *moment += amount / (trust * by_lobes + (1.0 - trust) * plainly).max(f64::MIN_POSITIVE);
+            let trust = trust as f32;
+            *moment += amount / f64::from((trust * by_lobes + (1.0 - trust) * plainly).max(f32::MIN_POSITIVE));
         }
     }
     let best = (0..TRUSTS.len()).min_by(|&a, &b| moments[a].total_cmp(&moments[b]));
@@ -127,30 +138,46 @@ fn first(samples: &[Sample], sum: f64) -> Vec<Lobe> {
     lobes
 }
 
-/// The share of each lobe in each sample.
-fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f32; MOST_LOBES]]) {
-    // Densities in f32, and what belongs to the lobe alone worked out once: this is where the time goes.
-    let mut scaled = [(Vec3::Z, 0.0_f32, 0.0_f32); MOST_LOBES];
-    for (scaled, lobe) in scaled.iter_mut().zip(lobes) {
-        let peak_per_sr = lobe.density_per_sr(lobe.direction) as f32;
-        *scaled = (lobe.direction, lobe.concentration, lobe.weight * peak_per_sr);
+/// The logarithm of each lobe's share times its density where that is greatest.
+fn heights(lobes: &[Lobe]) -> [f32; MOST_LOBES] {
+    let mut heights = [f32::NEG_INFINITY; MOST_LOBES];
+    for (height, lobe) in heights.iter_mut().zip(lobes) {
+        *height = (f64::from(lobe.weight) * lobe.density_per_sr(lobe.direction)).ln() as f32;
     }
+    heights
+}
+
+/// The density of some lobes together, per steradian; what is below a millionth per steradian is not counted.
+fn density(lobes: &[Lobe], heights: &[f32; MOST_LOBES], towards: Vec3) -> f32 {
+    let of = |(lobe, height): (&Lobe, &f32)| {
+        let logarithm = height + lobe.concentration * (lobe.direction.dot(towards) - 1.0);
+        if logarithm > LEAST_LOGARITHM { logarithm.exp() } else { 0.0 }
+    };
+    lobes.iter().zip(heights).map(of).sum()
+}
+
+/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
+/// single precision, for this is most of what a guide costs.
+fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+    let heights = heights(lobes);
     for (sample, shares) in samples.iter().zip(shares) {
-        for (share, &(direction, concentration, factor)) in shares.iter_mut().zip(&scaled) {
-            *share = factor * (concentration * (direction.dot(sample.direction) - 1.0)).exp();
+        let mut parts = heights;
+        for (part, lobe) in parts.iter_mut().zip(lobes) {
+            *part += lobe.concentration * (lobe.direction.dot(sample.direction) - 1.0);
         }
-        let sum: f32 = shares.iter().sum();
-        let scale = if sum > 0.0 { 1.0 / sum } else { 0.0 };
-        shares.iter_mut().for_each(|share| *share *= scale);
+        let highest = parts.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let parts = parts.map(|part| if part > f32::NEG_INFINITY { (part - highest).exp() } else { 0.0 });
+        let sum: f32 = parts.iter().sum();
+        *shares = parts.map(|part| if sum > 0.0 { f64::from(part / sum) } else { 0.0 });
     }
 }
 
 /// The lobes that suit those shares best.
-fn maximise(samples: &[Sample], sum: f64, shares: &[[f32; MOST_LOBES]], lobes: &mut [Lobe]) {
+fn maximise(samples: &[Sample], sum: f64, shares: &[[f64; MOST_LOBES]], lobes: &mut [Lobe]) {
     for (number, lobe) in lobes.iter_mut().enumerate() {
         let (mut weight, mut squares, mut mean, mut nearness) = (0.0, 0.0, DVec3::ZERO, 0.0);
         for (sample, shares) in samples.iter().zip(shares) {
-            let part = f64::from(sample.weight * shares[number]);
+            let part = f64::from(sample.weight) * shares[number];
             weight += part;
             squares += part * part;
             mean += part * sample.direction.as_dvec3();
