@@ -8,6 +8,9 @@
 //!
 //! Limits: those of the network. What the voxels close has no place of its own.
 
+pub mod fit;
+pub mod places;
+
 use crate::light::Incident;
 use glam::Vec3;
 

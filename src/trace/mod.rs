@@ -8,6 +8,7 @@
 //! rare paths carry the light, the standard error is itself a rare event: [`Traced::top_share`] shows it, and such
 //! sensors are named in the warnings. A wall very near a point light gives rare, very bright samples.
 
+pub mod guided;
 mod path;
 mod random;
 
@@ -16,7 +17,7 @@ use crate::light::{Field, Reading, Sampler, Settings, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Light, Scene, Sensor};
 use glam::DVec3;
-use path::Paths;
+use path::{Paths, Sample};
 use random::Random;
 use rayon::prelude::*;
 
@@ -79,6 +80,22 @@ pub fn trace(
 ) -> Result<Traced, Cancelled> {
     let sampler = Sampler::new(scene, sources, rays.epsilon_m());
     let paths = Paths { scene, rays, sampler: &sampler, max_bounces: settings.max_bounces.unwrap_or(u32::MAX) };
+    let sample = |sensor: &Sensor, random: &mut Random| paths.sample(sensor, random);
+    sampled(scene, sources, &sample, settings, progress, cancel)
+}
+
+/// How one sample is taken at a sensor.
+type TakeSample<'a> = dyn Fn(&Sensor, &mut Random) -> Sample + Sync + 'a;
+
+/// The readings at all sensors, by samples that are taken one by one.
+fn sampled(
+    scene: &Scene,
+    sources: &Sources,
+    take: &TakeSample,
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Traced, Cancelled> {
     let samples = settings.samples.max(1);
     let blocks = u64::from(samples.div_ceil(BLOCK));
     let total = blocks * scene.sensors.len() as u64;
@@ -96,7 +113,7 @@ pub fn trace(
                 let (sensor, block) = ((first + offset as u64) / blocks, (first + offset as u64) % blocks);
                 let count = BLOCK.min(samples - block as u32 * BLOCK);
                 let random = Random::new(settings.seed, sensor, block);
-                let sums = Sums::of(&paths, &scene.sensors[sensor as usize], count, random);
+                let sums = Sums::of(take, &scene.sensors[sensor as usize], count, random);
                 progress.advance(1);
                 Ok(sums)
             })
@@ -126,10 +143,10 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(paths: &Paths, sensor: &Sensor, count: u32, mut random: Random) -> Self {
+    fn of(take: &TakeSample, sensor: &Sensor, count: u32, mut random: Random) -> Self {
         let mut sums = Self::default();
         for _ in 0..count {
-            let sample = paths.sample(sensor, &mut random);
+            let sample = take(sensor, &mut random);
             sums.add(&Self {
                 samples: 1.0,
                 value: sample.value_w_m2,

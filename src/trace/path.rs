@@ -127,7 +127,7 @@ impl Paths<'_> {
     }
 }
 
-fn uniform_on_sphere(random: &mut Random) -> Vec3 {
+pub(super) fn uniform_on_sphere(random: &mut Random) -> Vec3 {
     let [height, turn] = random.pair();
     let z = 1.0 - 2.0 * height;
     let ring = (1.0 - z * z).max(0.0).sqrt();
@@ -136,14 +136,14 @@ fn uniform_on_sphere(random: &mut Random) -> Vec3 {
 }
 
 /// By the cosine about `normal`: density `cos / pi`.
-fn cosine_about(normal: Vec3, random: &mut Random) -> Vec3 {
+pub(super) fn cosine_about(normal: Vec3, random: &mut Random) -> Vec3 {
     let [square, turn] = random.pair();
     about(normal, (1.0 - square).sqrt(), turn)
 }
 
 /// Half of the draws by the cosine and half uniform over the hemisphere, with the density of the mixture. By the cosine
 /// alone, the part of the net flux along the surface would have no finite variance.
-fn towards_hemisphere(normal: Vec3, random: &mut Random) -> (Vec3, f64) {
+pub(super) fn towards_hemisphere(normal: Vec3, random: &mut Random) -> (Vec3, f64) {
     let by_cosine = random.number() < 0.5;
     let [height, turn] = random.pair();
     let cosine = if by_cosine { (1.0 - height).sqrt() } else { 1.0 - height };

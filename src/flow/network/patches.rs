@@ -41,6 +41,9 @@ const STEPS_BACK: u32 = 24;
 const CREVICE_VOXELS: [f32; 8] = [1.5, 2.2, 3.2, 4.7, 7.0, 10.0, 15.0, 22.0];
 const CREVICE_LOOKS: u32 = 16;
 
+/// A place whose normal has at least this cosine to that of a patch looks where the patch does.
+const LEAST_ALIKE: f32 = 0.5;
+
 /// A side on which no point fell is looked for up to this many blocks away.
 const BESIDE_BLOCKS: i32 = 2;
 
@@ -199,6 +202,18 @@ impl Patches {
     /// The patch of a zone that is like a wall of that normal and answer; another of the zone's where it has none.
     pub fn like(&self, zone: u32, normal: Vec3, answer: Answer) -> Option<u32> {
         self.of_kind.get(kind(zone, normal, answer) as usize).copied().filter(|&patch| patch != NONE)
+    }
+
+    /// The patch of a point on a wall that reflects, by what void the wall faces there alone: a guess where a wall is thinner
+    /// than a voxel. A look at the voxels, no ray.
+    pub fn near(&self, model: &Model, zones: &Zones, point_m: Vec3, normal: Vec3) -> Option<u32> {
+        let lattice = &model.voxels.lattice;
+        let before =
+            |out: f32| model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * (out * lattice.voxel_m)));
+        let node = STEPS_OUT_VOXELS.into_iter().find_map(before)?;
+        let patch = self.like(zones.at(node, point_m), normal, Answer { reflects: 1.0, passes: 0.0 })?;
+        let start = self.starts.get(self.list.get(patch as usize)?.starts.start)?;
+        (start.normal.dot(normal) > LEAST_ALIKE).then_some(patch)
     }
 
     /// The patch of a point on a wall, its normal on the side that was hit, by a ray of that length that came

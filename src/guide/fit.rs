@@ -1,0 +1,165 @@
+//! Which few lobes describe light from many directions?
+//!
+//! A mixture of von Mises-Fisher distributions by expectation and maximisation (Banerjee et al. 2005), its concentrations held
+//! back where few samples speak (a prior, as in Vorba et al. 2014). A lobe's distance is the harmonic mean of its samples', for
+//! near things turn more when a place moves.
+//!
+//! Limits: a local optimum from a start that is always the same, the samples farthest from those before.
+
+use crate::light::{Lobe, MOST_LOBES};
+use glam::{DVec3, Vec3};
+
+/// Light that comes from a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Where it comes from, unit length.
+    pub direction: Vec3,
+    /// How much it is.
+    pub weight: f32,
+    /// How far away what shines stands, metres.
+    pub distance_m: f32,
+}
+
+/// Steps of expectation and maximisation; later ones move lobes by less than their width.
+const STEPS: usize = 6;
+
+/// Concentration that the lobes start with: half of the light within 35 degrees.
+const FIRST_CONCENTRATION: f64 = 8.0;
+
+/// Samples that the prior is worth, and the mean cosine that it speaks for.
+const PRIOR_SAMPLES: f64 = 0.5;
+const PRIOR_COSINE: f64 = 0.5;
+
+/// No lobe is narrower: half of the light within 2 degrees.
+const MOST_CONCENTRATION: f64 = 1000.0;
+
+/// A lobe with less than this share is given up.
+const LEAST_SHARE: f64 = 0.01;
+
+/// At most [`MOST_LOBES`] lobes for some samples, the heaviest first; none where no sample has weight. Linear in the samples.
+pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
+    let sum: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
+    if !(sum > 0.0 && sum.is_finite()) {
+        return Vec::new();
+    }
+    let mut mixture = first(samples, sum);
+    let mut shares = vec![[0.0; MOST_LOBES]; samples.len()];
+    for _ in 0..STEPS {
+        expect(samples, &mixture, &mut shares);
+        maximise(samples, sum, &shares, &mut mixture);
+    }
+    mixture.retain(|lobe| f64::from(lobe.weight) >= LEAST_SHARE);
+    let kept: f32 = mixture.iter().map(|lobe| lobe.weight).sum();
+    mixture.iter_mut().for_each(|lobe| lobe.weight /= kept);
+    mixture.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    mixture
+}
+
+/// Lobes about the sample with most weight and those that are heaviest away from the ones before.
+fn first(samples: &[Sample], sum: f64) -> Vec<Lobe> {
+    let mut lobes: Vec<Lobe> = Vec::with_capacity(MOST_LOBES);
+    let mut away = vec![1.0_f32; samples.len()];
+    while lobes.len() < MOST_LOBES {
+        let promise = |(sample, away): (&Sample, &f32)| sample.weight * away;
+        let best = samples.iter().zip(&away).enumerate().max_by(|a, b| promise(a.1).total_cmp(&promise(b.1)));
+        let Some((_, (sample, away_now))) = best else { break };
+        if f64::from(sample.weight * away_now) < 1e-6 * sum {
+            break;
+        }
+        let direction = sample.direction;
+        lobes.push(Lobe { direction, concentration: FIRST_CONCENTRATION as f32, weight: 1.0, distance_m: 1.0 });
+        for (sample, away) in samples.iter().zip(&mut away) {
+            *away = away.min(1.0 - sample.direction.dot(direction));
+        }
+    }
+    let share = 1.0 / lobes.len() as f32;
+    lobes.iter_mut().for_each(|lobe| lobe.weight = share);
+    lobes
+}
+
+/// The share of each lobe in each sample.
+fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+    for (sample, shares) in samples.iter().zip(shares) {
+        *shares = [0.0; MOST_LOBES];
+        for (share, lobe) in shares.iter_mut().zip(lobes) {
+            *share = f64::from(lobe.weight) * lobe.density_per_sr(sample.direction);
+        }
+        let sum: f64 = shares.iter().sum();
+        if sum > 0.0 {
+            shares.iter_mut().for_each(|share| *share /= sum);
+        }
+    }
+}
+
+/// The lobes that suit those shares best.
+fn maximise(samples: &[Sample], sum: f64, shares: &[[f64; MOST_LOBES]], lobes: &mut [Lobe]) {
+    for (number, lobe) in lobes.iter_mut().enumerate() {
+        let (mut weight, mut squares, mut mean, mut nearness) = (0.0, 0.0, DVec3::ZERO, 0.0);
+        for (sample, shares) in samples.iter().zip(shares) {
+            let part = f64::from(sample.weight) * shares[number];
+            weight += part;
+            squares += part * part;
+            mean += part * sample.direction.as_dvec3();
+            nearness += part / f64::from(sample.distance_m.max(f32::MIN_POSITIVE));
+        }
+        if weight <= 0.0 {
+            lobe.weight = 0.0;
+            continue;
+        }
+        // As many samples of equal weight would say as much.
+        let count = weight * weight / squares;
+        let cosine = (mean.length() / weight * count + PRIOR_COSINE * PRIOR_SAMPLES) / (count + PRIOR_SAMPLES);
+        let concentration = cosine * (3.0 - cosine * cosine) / (1.0 - cosine * cosine).max(1e-9);
+        *lobe = Lobe {
+            direction: mean.normalize_or(lobe.direction.as_dvec3()).as_vec3(),
+            concentration: concentration.min(MOST_CONCENTRATION) as f32,
+            weight: (weight / sum) as f32,
+            distance_m: (weight / nearness) as f32,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_drawn_from_lobes_gives_them_back() {
+        let lobe = |direction: Vec3, concentration, weight, distance_m| Lobe {
+            direction: direction.normalize(),
+            concentration,
+            weight,
+            distance_m,
+        };
+        let known = [lobe(Vec3::new(1.0, 0.2, 0.0), 200.0, 0.6, 3.0), lobe(Vec3::new(-0.3, 0.1, 1.0), 20.0, 0.4, 7.0)];
+        let samples: Vec<Sample> = (0..2000)
+            .map(|index| {
+                let lobe = known[usize::from(index % 10 >= 6)];
+                let square = [(f64::from(index) * 0.754_878).fract(), (f64::from(index) * 0.569_840).fract()];
+                Sample { direction: lobe.drawn(square), weight: 2.0, distance_m: lobe.distance_m }
+            })
+            .collect();
+        let found = lobes(&samples);
+        assert!((found.iter().map(|lobe| lobe.weight).sum::<f32>() - 1.0).abs() < 1e-5);
+        assert!(found.windows(2).all(|pair| pair[0].weight >= pair[1].weight));
+        // Two lobes may share one of the known ones: together they have its weight, direction and distance.
+        for known in known {
+            let near = || found.iter().filter(|lobe| lobe.direction.dot(known.direction) > 0.8);
+            let weight: f32 = near().map(|lobe| lobe.weight).sum();
+            let mean: Vec3 = near().map(|lobe| lobe.direction * lobe.weight).sum();
+            assert!((weight - known.weight).abs() < 0.03, "{found:?}");
+            assert!(mean.normalize().dot(known.direction) > 0.999, "{found:?}");
+            assert!(near().all(|lobe| (lobe.distance_m / known.distance_m - 1.0).abs() < 0.02), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn without_light_there_is_no_lobe_and_one_sample_is_one() {
+        assert_eq!(lobes(&[]), []);
+        let sample = Sample { direction: Vec3::X, weight: 0.0, distance_m: 1.0 };
+        assert_eq!(lobes(&[sample]), []);
+        let found = lobes(&[Sample { weight: 3.0, ..sample }]);
+        assert_eq!(found.len(), 1);
+        assert!(found[0].direction.distance(Vec3::X) < 1e-6 && (found[0].weight - 1.0).abs() < 1e-6);
+    }
+}

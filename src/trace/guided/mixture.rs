@@ -1,0 +1,116 @@
+//! From which directions shall a path go on, and which lamp shall it ask?
+
+use crate::light::{Incident, Lobe, MOST_LOBES};
+use crate::trace::random::Random;
+use glam::Vec3;
+use std::f64::consts::PI;
+
+/// A lobe is turned by parallax no nearer than this share of its distance, and not narrowed below.
+const NEAREST_SHARE: f32 = 0.25;
+
+/// A place's lobes, ready to be drawn from.
+#[derive(Debug, Clone)]
+pub(super) struct Mixture {
+    position_m: Vec3,
+    lobes: Vec<Lobe>,
+    /// Light reflected at least once before it arrives, W/m2.
+    pub(super) reflected_w_m2: f64,
+    /// Straight from all emitters, W/m2.
+    pub(super) direct_w_m2: f64,
+    /// The share of each emitter and all before it in what comes straight.
+    shares_up_to: Vec<f64>,
+}
+
+/// Lobes as a point sees them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    lobes: [Lobe; MOST_LOBES],
+    factors: [f64; MOST_LOBES],
+    count: usize,
+}
+
+impl Mixture {
+    pub(super) fn of(incident: &Incident) -> Self {
+        let direct_w_m2: f64 = incident.direct_w_m2.iter().map(|&part| f64::from(part)).sum();
+        let mut up_to = 0.0;
+        let shares = incident.direct_w_m2.iter().map(|&part| {
+            up_to += f64::from(part) / direct_w_m2.max(f64::MIN_POSITIVE);
+            up_to
+        });
+        Self {
+            position_m: incident.position_m,
+            lobes: incident.lobes.iter().take(MOST_LOBES).copied().collect(),
+            reflected_w_m2: f64::from(incident.reflected_w_m2),
+            direct_w_m2,
+            shares_up_to: shares.collect(),
+        }
+    }
+
+    /// The lobes as they are seen from a point near the place.
+    pub(super) fn seen_from(&self, point_m: Vec3) -> Seen {
+        let none = Lobe { direction: Vec3::Z, concentration: 0.0, weight: 0.0, distance_m: 1.0 };
+        let mut seen = Seen { lobes: [none; MOST_LOBES], factors: [0.0; MOST_LOBES], count: self.lobes.len() };
+        let moved_m = self.position_m - point_m;
+        for (number, lobe) in self.lobes.iter().enumerate() {
+            let to_m = moved_m + lobe.distance_m * lobe.direction;
+            let distance_m = to_m.length().max(NEAREST_SHARE * lobe.distance_m);
+            let direction = to_m.normalize_or(lobe.direction);
+            let nearer = (distance_m / lobe.distance_m).min(2.0);
+            let concentration = lobe.concentration * nearer * nearer;
+            seen.lobes[number] = Lobe { direction, concentration, ..*lobe };
+            let kappa = f64::from(concentration).max(1e-3);
+            seen.factors[number] = f64::from(lobe.weight) * kappa / (2.0 * PI * -(-2.0 * kappa).exp_m1());
+        }
+        seen
+    }
+
+    /// The emitter that this number in [0, 1) picks by what each brings.
+    pub(super) fn emitter(&self, random: f64) -> usize {
+        self.shares_up_to.partition_point(|&up_to| up_to <= random).min(self.shares_up_to.len().saturating_sub(1))
+    }
+
+    /// The chance of that emitter.
+    pub(super) fn chance(&self, emitter: usize) -> f64 {
+        let up_to = |number: usize| self.shares_up_to.get(number).copied().unwrap_or(0.0);
+        up_to(emitter) - emitter.checked_sub(1).map_or(0.0, up_to)
+    }
+}
+
+impl Seen {
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// A direction drawn from the lobes; with a normal, what points below the surface is turned up by reflection in it.
+    pub(super) fn drawn(&self, normal: Option<Vec3>, random: &mut Random) -> Vec3 {
+        let mut left = random.number() as f32;
+        let mut number = 0;
+        while number + 1 < self.count && left >= self.lobes[number].weight {
+            left -= self.lobes[number].weight;
+            number += 1;
+        }
+        let direction = self.lobes[number].drawn(random.pair());
+        match normal {
+            Some(normal) if normal.dot(direction) < 0.0 => direction - 2.0 * normal.dot(direction) * normal,
+            _ => direction,
+        }
+    }
+
+    /// Its density, per steradian.
+    pub(super) fn density_per_sr(&self, direction: Vec3, normal: Option<Vec3>) -> f64 {
+        let above = self.all_around_per_sr(direction);
+        match normal {
+            Some(normal) => above + self.all_around_per_sr(direction - 2.0 * normal.dot(direction) * normal),
+            None => above,
+        }
+    }
+
+    fn all_around_per_sr(&self, direction: Vec3) -> f64 {
+        let lobes = self.lobes.iter().zip(&self.factors).take(self.count);
+        let density = |(lobe, factor): (&Lobe, &f64)| {
+            let exponent = lobe.concentration.max(1e-3) * (lobe.direction.dot(direction) - 1.0);
+            if exponent < -30.0 { 0.0 } else { factor * f64::from(exponent.exp()) }
+        };
+        lobes.map(density).sum()
+    }
+}
