@@ -1,10 +1,16 @@
 //! Who competes: a name, what it makes before its first sample, and how it then answers.
 
+use glam::Vec3;
+use lightvein::flow::network::{Network, Quality};
+use lightvein::guide::places;
 use lightvein::job::{Cancel, Quiet};
-use lightvein::light::{Settings, Sources};
+use lightvein::light::{Guiding, Incident, Settings, Sources};
+use lightvein::model::Model;
+use lightvein::model::choose::choose_voxel_m;
 use lightvein::rays::Rays;
 use lightvein::scene::Scene;
-use lightvein::trace::{Traced, learned, trace};
+use lightvein::trace::guided::trace_guided;
+use lightvein::trace::{Traced, trace};
 use std::error::Error;
 use std::sync::Arc;
 
@@ -37,7 +43,7 @@ impl<'a> Stage<'a> {
 pub fn contestants<'a>(stage: &'a Stage<'a>) -> Vec<Contestant<'a>> {
     vec![
         Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
-        Contestant { name: "learned", prepare: Box::new(|| Ok(learning(stage))), learns: true },
+        Contestant { name: "guided", prepare: Box::new(|| guided(stage)), learns: false },
     ]
 }
 
@@ -48,10 +54,30 @@ fn plain<'a>(stage: &'a Stage<'a>) -> Run<'a> {
     })
 }
 
-fn learning<'a>(stage: &'a Stage<'a>) -> Run<'a> {
-    Box::new(|seed, samples| {
+/// Voxels, skeleton, network and lobes; then paths that follow the lobes.
+fn guided<'a>(stage: &'a Stage<'a>) -> Result<Run<'a>, Box<dyn Error>> {
+    let (quiet, cancel) = (&Quiet, &Cancel::new());
+    let model = match stage.scene.model.voxel_m {
+        Some(voxel_m) => Model::build(stage.scene, stage.rays.clone(), voxel_m, u64::MAX, quiet, cancel)?,
+        None => choose_voxel_m(stage.scene, &stage.rays, u64::MAX, quiet, cancel)?.model,
+    };
+    // The network borrows the model and both serve the runs: they live as long as the program.
+    let model: &Model = Box::leak(Box::new(model));
+    let (network, lines) = Network::new(model, &Quality::MEDIUM, &Settings::default(), quiet, cancel)?;
+    let walls = places::at_walls(&network, &lines);
+    let nodes = places::at_nodes(&network, &lines, 0);
+    Ok(Box::new(move |seed, samples| {
+        let first_node = walls.len() as u32;
+        let (patches, zones) = (&network.grounds.patches, &network.grounds.zones);
+        let node_at = |at_m: Vec3| model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at_m));
+        let place_of = |at_m: Vec3, normal: Option<Vec3>| match normal {
+            Some(normal) => patches.near(model, zones, at_m, normal),
+            None => node_at(at_m).map(|node| node + first_node),
+        };
+        let places: Vec<&Incident> = walls.iter().chain(&nodes).collect();
+        let guiding = Guiding { places, place_of: &place_of };
         let settings = Settings { seed, samples, ..Settings::default() };
-        learned::trace(stage.scene, &stage.rays, &stage.sources, &settings, &Quiet, &Cancel::new())
+        trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
             .expect("nobody cancels")
-    })
+    }))
 }

@@ -87,6 +87,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
 }
 
 fn seconds(word: &Path) -> Result<f64, String> {
-    let asked = word.to_str().and_then(|word| word.parse::<f64>().ok()).filter(|seconds| (1.0..=3600.0).contains(seconds));
+    let asked =
+        word.to_str().and_then(|word| word.parse::<f64>().ok()).filter(|seconds| (1.0..=3600.0).contains(seconds));
     asked.ok_or_else(|| format!("{} is no number of seconds from 1 to 3600", word.display()))
 }

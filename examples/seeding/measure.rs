@@ -98,7 +98,7 @@ pub fn scene(scene: &Scene, effort: &Effort) -> Result<Finding, Box<dyn Error>> 
     let independent: Vec<&Ready> = ready.iter().filter(|one| !one.learns).collect();
 
     let (truth_w_m2, truth_error) = truth(&slices(&independent, TRUTH_SEED, effort.truth_s));
-    let mut measured = slices(&independent, SEED, effort.measure_s).into_iter();
+    let mut measured = slices(&independent, SEED, effort.measure_s).into_iter().peekable();
     let budgets_s: Vec<f64> = BUDGETS_S.into_iter().filter(|&budget_s| budget_s <= effort.longest_s).collect();
     let outcomes = ready.iter().map(|one| match measured.next_if(|_| !one.learns) {
         Some(slices) => outcome_of_slices(one, &slices, &truth_w_m2, &budgets_s),
@@ -160,7 +160,8 @@ fn samples_within(run: &Run, seconds: f64) -> u32 {
 /// Mean and its relative standard error at each sensor.
 fn truth(all: &[Slices]) -> (Vec<f64>, Vec<f64>) {
     let sensors = all.first().and_then(|slices| slices.runs.first()).map_or(0, |run| run.field.readings.len());
-    let moments: Vec<Vec<[f64; 2]>> = all.iter().map(|slices| (0..sensors).map(|at| moments(slices, at)).collect()).collect();
+    let moments: Vec<Vec<[f64; 2]>> =
+        all.iter().map(|slices| (0..sensors).map(|at| moments(slices, at)).collect()).collect();
     let weight = |of: &Vec<[f64; 2]>| {
         let lit = of.iter().filter(|[mean, _]| *mean > 0.0);
         1.0 / median(&lit.map(|[mean, variance]| variance / (mean * mean)).collect::<Vec<_>>()).max(1e-300)
@@ -236,7 +237,12 @@ fn outcome_of_learning(one: &Ready, truth_w_m2: &[f64], budgets_s: &[f64]) -> Ou
         }
         let times = took_s / count as f64 / budget_s;
         let square = |(sensor, &truth_w_m2): (usize, &f64)| {
-            times * if count < FEWEST_RUNS { own_square(&runs, sensor, truth_w_m2) } else { mean_square(&runs, sensor, truth_w_m2) }
+            times
+                * if count < FEWEST_RUNS {
+                    own_square(&runs, sensor, truth_w_m2)
+                } else {
+                    mean_square(&runs, sensor, truth_w_m2)
+                }
         };
         squares.push(truth_w_m2.iter().enumerate().map(square).collect());
         for (sensor, is_doubtful) in is_doubtful.iter_mut().enumerate() {

@@ -6,7 +6,8 @@ use std::io::{self, Write};
 
 /// Tells a scene on the terminal.
 pub fn print(found: &Finding) {
-    let lit: Vec<f64> = found.truth_error.iter().zip(&found.truth_w_m2).filter(|(_, truth)| **truth > 0.0).map(|(e, _)| *e).collect();
+    let lit: Vec<f64> =
+        found.truth_error.iter().zip(&found.truth_w_m2).filter(|(_, truth)| **truth > 0.0).map(|(e, _)| *e).collect();
     let worst = lit.iter().copied().fold(0.0, f64::max);
     println!(
         "\n{}: {} sensors, {} threads; truth within {:.2}% (median), {:.2}% (worst); {} of {} beyond 3 standard errors of the reference",
@@ -18,7 +19,10 @@ pub fn print(found: &Finding) {
         found.off_reference[1],
         found.off_reference[0],
     );
-    println!("  {:8} {:>9} {:>6} {:>10} {:>22} {:>8}", "", "prepared", "budget", "rms error", "plain / its MSE", "doubtful");
+    println!(
+        "  {:8} {:>9} {:>6} {:>10} {:>22} {:>8}",
+        "", "prepared", "budget", "rms error", "plain / its MSE", "doubtful"
+    );
     println!("  {:8} {:>9} {:>6} {:>10} {:>11} {:>10}", "", "s", "s", "median %", "median", "worst");
     for outcome in &found.outcomes {
         for (budget, budget_s) in found.budgets_s.iter().enumerate() {
@@ -33,7 +37,9 @@ pub fn print(found: &Finding) {
                 doubtful(found, outcome),
             );
         }
-        if let (Some((squares, sample_s)), Some((plain, plain_s))) = (&outcome.sample, plain(found).and_then(|it| it.sample.as_ref())) {
+        if let (Some((squares, sample_s)), Some((plain, plain_s))) =
+            (&outcome.sample, plain(found).and_then(|it| it.sample.as_ref()))
+        {
             let by_samples: Vec<f64> = plain.iter().zip(squares).map(|(plain, its)| plain / its).collect();
             println!(
                 "  {:8} by equal samples {:.2} (median); a sample takes {:.2} us, {:.2} of plain's",
@@ -91,7 +97,16 @@ pub fn panel(found: &Finding) -> Panel {
 pub fn write_table(out: &mut dyn Write, findings: &[Finding]) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record([
-        "scene", "contestant", "prepare_s", "budget_s", "sensor", "truth_w_m2", "truth_error", "rms_error", "ratio", "doubtful",
+        "scene",
+        "contestant",
+        "prepare_s",
+        "budget_s",
+        "sensor",
+        "truth_w_m2",
+        "truth_error",
+        "rms_error",
+        "ratio",
+        "doubtful",
     ])?;
     for found in findings {
         for outcome in &found.outcomes {
