@@ -10,6 +10,7 @@ use lightvein::model::choose::choose_voxel_m;
 use lightvein::rays::Rays;
 use lightvein::scene::Scene;
 use lightvein::trace::guided::trace_guided;
+use lightvein::trace::learned::trace_learning;
 use lightvein::trace::{Traced, trace};
 use std::error::Error;
 use std::sync::Arc;
@@ -44,6 +45,7 @@ pub fn contestants<'a>(stage: &'a Stage<'a>) -> Vec<Contestant<'a>> {
     vec![
         Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
         Contestant { name: "guided", prepare: Box::new(|| guided(stage)), learns: false },
+        Contestant { name: "learned", prepare: Box::new(|| Ok(learning(stage))), learns: true },
     ]
 }
 
@@ -80,4 +82,12 @@ fn guided<'a>(stage: &'a Stage<'a>) -> Result<Run<'a>, Box<dyn Error>> {
         trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
             .expect("nobody cancels")
     }))
+}
+
+fn learning<'a>(stage: &'a Stage<'a>) -> Run<'a> {
+    Box::new(|seed, samples| {
+        let settings = Settings { seed, samples, ..Settings::default() };
+        trace_learning(stage.scene, &stage.rays, &stage.sources, &settings, &Quiet, &Cancel::new())
+            .expect("nobody cancels")
+    })
 }
