@@ -23,13 +23,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let t_net = began.elapsed().as_secs_f64();
         let walls = places::at_walls(&network, &lines);
         let t_walls = began.elapsed().as_secs_f64();
-        let nodes = places::at_nodes(&network, &lines, 0);
+        let zones = places::in_zones(&network, &lines, 0);
+        let nodes = places::at_nodes(&network, &zones);
         let build = began.elapsed().as_secs_f64();
-        let all: Vec<_> = walls.iter().chain(&nodes).collect();
+        let all: Vec<_> = walls.iter().chain(&zones).collect();
         let first = walls.len() as u32;
+        let zones_of = &network.grounds.zones;
+        let open = |at: glam::Vec3| model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at)).map(|n| zones_of.at(n, at) + first);
         let place_of = |at: glam::Vec3, normal: Option<glam::Vec3>| match normal {
-            Some(n) => network.grounds.patches.near(&model, &network.grounds.zones, at, n),
-            None => model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at)).map(|n| n + first),
+            Some(n) => network.grounds.patches.near(&model, zones_of, at, n).or_else(|| open(at)),
+            None => open(at),
         };
         let guiding = Guiding { places: all, place_of: &place_of };
         println!(

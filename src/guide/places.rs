@@ -12,7 +12,7 @@ use crate::flow::network::lines::Line;
 use crate::flow::network::walk::End;
 use crate::flow::sequence;
 use crate::light::Incident;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -73,8 +73,9 @@ pub fn at_walls(network: &Network, lines: &[Line]) -> Vec<Incident> {
     sights.par_iter().enumerate().map(incident).collect()
 }
 
-/// The light at every node of the skeleton: the lobes of its zone, and the direct light at the zone's middle.
-pub fn at_nodes(network: &Network, lines: &[Line], seed: u64) -> Vec<Incident> {
+/// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
+/// there.
+pub fn in_zones(network: &Network, lines: &[Line], seed: u64) -> Vec<Incident> {
     let grounds = &network.grounds;
     let (model, zones) = (grounds.model, &grounds.zones);
     let radiosity_w_m2 = radiosity_w_m2(network);
@@ -88,40 +89,62 @@ pub fn at_nodes(network: &Network, lines: &[Line], seed: u64) -> Vec<Incident> {
         Some((zones.at(node, at_m), at_m, along_m))
     };
     let places: Vec<Option<(u32, Vec3, f32)>> = lines.par_iter().enumerate().map(place).collect();
-    let mut seen: Vec<Vec<Sight>> = vec![Vec::new(); zones.count];
-    let mut track_m3 = vec![0.0; zones.count];
+    let mut crossed = vec![Crossed::default(); zones.count];
     for (line, place) in lines.iter().zip(places) {
         let Some((zone, at_m, along_m)) = place.filter(|_| line.panes.is_empty()) else { continue };
+        let crossed = &mut crossed[zone as usize];
         let weight_m3 = line.weight_m2 * f64::from(line.length_m);
-        track_m3[zone as usize] += weight_m3;
+        crossed.track_m3 += weight_m3;
+        crossed.moment += weight_m3 * at_m.as_dvec3();
         let ways = [(line.ends[0], -1.0, along_m), (line.ends[1], 1.0, line.length_m - along_m)];
         for (end, sign, distance_m) in ways {
             let weight = weight_m3 * shines(end);
             if weight > 0.0 {
-                seen[zone as usize].push(Sight { from_m: at_m, direction: sign * line.direction, distance_m, weight });
+                crossed.sights.push(Sight { from_m: at_m, direction: sign * line.direction, distance_m, weight });
             }
         }
     }
 
-    let graph = &model.skeleton.graph;
-    let incident = |node: petgraph::graph::NodeIndex| {
-        let position_m = model.node_m(node);
-        let zone = zones.at(node.index() as u32, position_m) as usize;
-        let (seen, edge_m) = (&seen[zone], zones.edge_m(node.index() as u32));
-        let scalar_w_m2 = 2.0 * seen.iter().map(|sight| sight.weight).sum::<f64>() / track_m3[zone].max(1e-30);
+    let incident = |(zone, crossed): (usize, &Crossed)| {
+        let track_m3 = crossed.track_m3.max(f64::MIN_POSITIVE);
+        let position_m = (crossed.moment / track_m3).as_vec3();
         let straight = |emitter: usize| {
-            let offset = sequence::offset(seed, SHADOW_OFFSETS + node.index() as u64);
+            let offset = sequence::offset(seed, SHADOW_OFFSETS + zone as u64);
             direct(model, position_m, None, emitter, 1, offset).value_w_m2 as f32
         };
+        let is_seen = crossed.track_m3 > 0.0;
         Incident {
             position_m,
             normal: None,
-            lobes: fit::lobes(&turned(seen, position_m, edge_m)),
-            reflected_w_m2: scalar_w_m2 as f32,
-            direct_w_m2: (0..model.sources.emitters.len()).map(straight).collect(),
+            lobes: fit::lobes(&turned(&crossed.sights, position_m, (0.5 * track_m3).cbrt() as f32)),
+            reflected_w_m2: (2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3) as f32,
+            direct_w_m2: (0..model.sources.emitters.len())
+                .map(|emitter| if is_seen { straight(emitter) } else { 0.0 })
+                .collect(),
         }
     };
-    graph.node_indices().collect::<Vec<_>>().into_par_iter().map(incident).collect()
+    crossed.par_iter().enumerate().map(incident).collect()
+}
+
+/// The light at every node of the skeleton: that of its zone, turned to where the node sees it.
+pub fn at_nodes(network: &Network, in_zones: &[Incident]) -> Vec<Incident> {
+    let grounds = &network.grounds;
+    let at_node = |node: petgraph::graph::NodeIndex| {
+        let position_m = grounds.model.node_m(node);
+        let zone = grounds.zones.at(node.index() as u32, position_m);
+        in_zones.get(zone as usize).map_or_else(Incident::default, |incident| incident.seen_from(position_m))
+    };
+    grounds.model.skeleton.graph.node_indices().map(at_node).collect()
+}
+
+/// What the lines show of a zone.
+#[derive(Debug, Clone, Default)]
+struct Crossed {
+    /// Sum of weight times length, m3.
+    track_m3: f64,
+    /// The same times where the lines were looked at.
+    moment: DVec3,
+    sights: Vec<Sight>,
 }
 
 /// What each patch sends out by all reflections, W/m2.

@@ -5,13 +5,15 @@ use crate::trace::random::Random;
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// A lobe is turned by parallax no nearer than this share of its distance, and not narrowed below.
-const NEAREST_SHARE: f32 = 0.25;
+/// Below this concentration a lobe is even.
+const LEAST_CONCENTRATION: f32 = 1e-3;
 
 /// A place's lobes, ready to be drawn from.
 #[derive(Debug, Clone)]
 pub(super) struct Mixture {
     position_m: Vec3,
+    /// Whether it stands in the open, and so knows light from all around.
+    is_open: bool,
     lobes: Vec<Lobe>,
     /// Light reflected at least once before it arrives, W/m2.
     pub(super) reflected_w_m2: f64,
@@ -24,6 +26,7 @@ pub(super) struct Mixture {
 /// Lobes as a point sees them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
+    is_open: bool,
     lobes: [Lobe; MOST_LOBES],
     factors: [f64; MOST_LOBES],
     count: usize,
@@ -39,6 +42,7 @@ impl Mixture {
         });
         Self {
             position_m: incident.position_m,
+            is_open: incident.normal.is_none(),
             lobes: incident.lobes.iter().take(MOST_LOBES).copied().collect(),
             reflected_w_m2: f64::from(incident.reflected_w_m2),
             direct_w_m2,
@@ -49,19 +53,21 @@ impl Mixture {
     /// The lobes as they are seen from a point near the place.
     pub(super) fn seen_from(&self, point_m: Vec3) -> Seen {
         let none = Lobe { direction: Vec3::Z, concentration: 0.0, weight: 0.0, distance_m: 1.0 };
-        let mut seen = Seen { lobes: [none; MOST_LOBES], factors: [0.0; MOST_LOBES], count: self.lobes.len() };
-        let moved_m = self.position_m - point_m;
+        let mut seen = Seen { is_open: self.is_open, lobes: [none; MOST_LOBES], factors: [0.0; MOST_LOBES], count: self.lobes.len() };
+        let moved_m = point_m - self.position_m;
         for (number, lobe) in self.lobes.iter().enumerate() {
-            let to_m = moved_m + lobe.distance_m * lobe.direction;
-            let distance_m = to_m.length().max(NEAREST_SHARE * lobe.distance_m);
-            let direction = to_m.normalize_or(lobe.direction);
-            let nearer = (distance_m / lobe.distance_m).min(2.0);
-            let concentration = lobe.concentration * nearer * nearer;
-            seen.lobes[number] = Lobe { direction, concentration, ..*lobe };
-            let kappa = f64::from(concentration).max(1e-3);
+            let lobe = lobe.seen_after(moved_m);
+            let kappa = f64::from(lobe.concentration.max(LEAST_CONCENTRATION));
             seen.factors[number] = f64::from(lobe.weight) * kappa / (2.0 * PI * -(-2.0 * kappa).exp_m1());
+            seen.lobes[number] = lobe;
         }
         seen
+    }
+
+    /// The reflected light that a surface there gets, or a point in the open, W/m2.
+    pub(super) fn expected_w_m2(&self, normal: Option<Vec3>) -> f64 {
+        // A surface in the open gets a quarter of the scalar irradiance, if light comes evenly.
+        if self.is_open && normal.is_some() { 0.25 * self.reflected_w_m2 } else { self.reflected_w_m2 }
     }
 
     /// The emitter that this number in [0, 1) picks by what each brings.
@@ -91,7 +97,7 @@ impl Seen {
         }
         let direction = self.lobes[number].drawn(random.pair());
         match normal {
-            Some(normal) if normal.dot(direction) < 0.0 => direction - 2.0 * normal.dot(direction) * normal,
+            Some(normal) if !self.is_open && normal.dot(direction) < 0.0 => direction - 2.0 * normal.dot(direction) * normal,
             _ => direction,
         }
     }
@@ -100,15 +106,15 @@ impl Seen {
     pub(super) fn density_per_sr(&self, direction: Vec3, normal: Option<Vec3>) -> f64 {
         let above = self.all_around_per_sr(direction);
         match normal {
-            Some(normal) => above + self.all_around_per_sr(direction - 2.0 * normal.dot(direction) * normal),
-            None => above,
+            Some(normal) if !self.is_open => above + self.all_around_per_sr(direction - 2.0 * normal.dot(direction) * normal),
+            _ => above,
         }
     }
 
     fn all_around_per_sr(&self, direction: Vec3) -> f64 {
         let lobes = self.lobes.iter().zip(&self.factors).take(self.count);
         let density = |(lobe, factor): (&Lobe, &f64)| {
-            let exponent = lobe.concentration.max(1e-3) * (lobe.direction.dot(direction) - 1.0);
+            let exponent = lobe.concentration.max(LEAST_CONCENTRATION) * (lobe.direction.dot(direction) - 1.0);
             if exponent < -30.0 { 0.0 } else { factor * f64::from(exponent.exp()) }
         };
         lobes.map(density).sum()

@@ -14,21 +14,16 @@ use crate::trace::random::Random;
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// Share of directions that are drawn from the guide.
-const GUIDED_SHARE: f64 = 0.5;
 
-/// Share of lamps that are drawn from the guide.
-const GUIDED_LAMPS: f64 = 0.75;
 
-/// A lamp is asked for at least with this chance.
-const LEAST_ASKED: f64 = 0.1;
 
-/// What lamps bring to a vertex is noise enough when it is this share of what the sensor gets.
-const ASKED_SHARE: f64 = 0.25;
 
-/// A path goes on at least with this chance, and at most with that, so that it ends.
-const LEAST_SURVIVAL: f64 = 0.1;
-const MOST_SURVIVAL: f64 = 0.99;
+
+
+
+
+
+
 
 /// Turns before roulette where the guide says nothing, as in the plain tracer.
 const TURNS_BEFORE_ROULETTE: u32 = 4;
@@ -44,10 +39,14 @@ pub(super) struct Paths<'a> {
     pub(super) max_bounces: u32,
 }
 
+thread_local! { static LOG: std::cell::RefCell<String> = const { std::cell::RefCell::new(String::new()) }; }
+fn log(t: impl FnOnce() -> String) { if env("LOGAT", 0.0) > 0.0 { LOG.with_borrow_mut(|l| l.push_str(&t())); } }
+
 impl Paths<'_> {
     /// One sample of the (scalar) irradiance and the net flux at a sensor.
     pub(super) fn sample(&self, sensor: &Sensor, random: &mut Random) -> Sample {
         let normal = sensor.normal;
+        LOG.with_borrow_mut(|l| l.clear());
         let position_m = sensor.position_m + normal.unwrap_or(Vec3::ZERO) * self.rays.epsilon_m();
         let mixture = self.mixture(position_m, normal);
         let mut sample = Sample::default();
@@ -72,9 +71,11 @@ impl Paths<'_> {
         };
         let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
         if density_per_sr > 0.0 {
-            let expected_w_m2 = mixture.map_or(0.0, |mixture| mixture.reflected_w_m2);
+            let expected_w_m2 = mixture.map_or(0.0, |mixture| mixture.expected_w_m2(normal));
             let goal = expected_w_m2 * density_per_sr / cosine.max(1e-3);
+            log(|| format!("start dir {direction:.2} density {density_per_sr:.3} expected {expected_w_m2:.4}\n"));
             let radiance_w_m2_sr = self.reflected(position_m, direction, goal, random);
+            if env("LOGAT", 0.0) > 0.0 && cosine * radiance_w_m2_sr / density_per_sr > env("LOGAT", 0.0) * expected_w_m2 { LOG.with_borrow(|l| eprintln!("{} {:.1} x expected\n{l}", sensor.id, cosine * radiance_w_m2_sr / density_per_sr / expected_w_m2)); }
             add(direction, radiance_w_m2_sr / density_per_sr);
         }
         sample
@@ -101,13 +102,13 @@ impl Paths<'_> {
         let (emitter, probability) = match known {
             None => self.sampler.choose(position_m, normal, random.number())?,
             Some(mixture) => {
-                let emitter = if random.number() < GUIDED_LAMPS {
+                let emitter = if random.number() < env("GUIDED_LAMPS", 0.75) {
                     mixture.emitter(random.number())
                 } else {
                     self.sampler.choose(position_m, normal, random.number())?.0
                 };
                 let plain = self.sampler.chance(emitter, position_m, normal);
-                (emitter, GUIDED_LAMPS * mixture.chance(emitter) + (1.0 - GUIDED_LAMPS) * plain)
+                (emitter, env("GUIDED_LAMPS", 0.75) * mixture.chance(emitter) + (1.0 - env("GUIDED_LAMPS", 0.75)) * plain)
             }
         };
         let light = self.sampler.sample(emitter, position_m, random.pair())?;
@@ -135,11 +136,12 @@ impl Paths<'_> {
 
             if reflectance > 0.0 {
                 let asked =
-                    guided.map_or(1.0, |mixture| (worth * mixture.direct_w_m2 / ASKED_SHARE).clamp(LEAST_ASKED, 1.0));
+                    guided.map_or(1.0, |mixture| (worth * mixture.direct_w_m2 / env("ASKED_SHARE", 0.25)).clamp(env("LEAST_ASKED", 0.1), 1.0));
                 if let Some((towards, irradiance_w_m2)) =
                     self.direct(at_m + lift_m, Some(facing), mixture, asked, random)
                 {
                     let cosine = f64::from(facing.dot(towards));
+                    log(|| format!("   NEE at {at_m:.2} asked {asked:.2} E {:.4} place direct {:.4} contributes {:.2}\n", cosine * irradiance_w_m2 * asked, mixture.map_or(-1.0, |m| m.direct_w_m2), worth * cosine * irradiance_w_m2));
                     radiance_w_m2_sr += weight * reflectance / PI * cosine * irradiance_w_m2;
                 }
             }
@@ -148,8 +150,8 @@ impl Paths<'_> {
             turns += 1;
             weight *= goes_on;
             let survival = match guided.filter(|_| transmittance <= 0.0) {
-                Some(mixture) => (worth * mixture.reflected_w_m2).clamp(LEAST_SURVIVAL, MOST_SURVIVAL),
-                None if turns > TURNS_BEFORE_ROULETTE => goes_on.min(MOST_SURVIVAL),
+                Some(mixture) => (worth * mixture.reflected_w_m2).clamp(env("LEAST_SURVIVAL", 0.1), env("MOST_SURVIVAL", 0.99)),
+                None if turns > TURNS_BEFORE_ROULETTE => goes_on.min(env("MOST_SURVIVAL", 0.99)),
                 None => 1.0,
             };
             if survival < 1.0 {
@@ -176,6 +178,7 @@ impl Paths<'_> {
             if plain_per_sr <= 0.0 {
                 break;
             }
+            log(|| format!("  at {at_m:.2} n {facing:.1} survival {survival:.2} exp {:.2} next {next:.2} plain {plain_per_sr:.3} mix {density_per_sr:.3} factor {:.2}\n", mixture.map_or(-1.0, |m| worth * m.reflected_w_m2), plain_per_sr / density_per_sr));
             weight *= plain_per_sr / density_per_sr;
             direction = next;
         }
@@ -202,8 +205,15 @@ fn drawn(
         let direction = plain(random);
         return (direction, plain_per_sr(direction));
     };
-    let direction = if random.number() < GUIDED_SHARE { seen.drawn(normal, random) } else { plain(random) };
+    let direction = if random.number() < env("GUIDED_SHARE", 0.5) { seen.drawn(normal, random) } else { plain(random) };
     let density_per_sr =
-        GUIDED_SHARE * seen.density_per_sr(direction, normal) + (1.0 - GUIDED_SHARE) * plain_per_sr(direction);
+        env("GUIDED_SHARE", 0.5) * seen.density_per_sr(direction, normal) + (1.0 - env("GUIDED_SHARE", 0.5)) * plain_per_sr(direction);
     (direction, density_per_sr)
+}
+
+fn env(name: &'static str, or: f64) -> f64 {
+    use std::sync::OnceLock;
+    static V: OnceLock<std::collections::HashMap<String, f64>> = OnceLock::new();
+    let v = V.get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k, v.parse().ok()?))).collect());
+    v.get(name).copied().unwrap_or(or)
 }
