@@ -5,7 +5,7 @@
 //! 1995). Lamps and roulette are the plain tracer's. Every turn of a path tells the place where it stands what came from there.
 
 use super::directions::{direction_of, square_of};
-use super::places::{Places, Sight};
+use super::places::{Place, Places, Sight};
 use crate::scene::Sensor;
 use crate::trace::path::{
     MOST_SURVIVAL, Paths, Sample, TURNS_BEFORE_ROULETTE, cosine_about, towards_hemisphere, uniform_on_sphere,
@@ -13,9 +13,6 @@ use crate::trace::path::{
 use crate::trace::random::Random;
 use glam::Vec3;
 use std::f64::consts::PI;
-
-/// Share of directions that are drawn from what is known.
-const LEARNED_SHARE: f64 = 0.5;
 
 /// A turn of a path that waits for what comes from its direction.
 #[derive(Debug, Clone, Copy)]
@@ -157,17 +154,17 @@ fn drawn(
     plain: impl Fn(&mut Random) -> Vec3,
     plain_per_sr: impl Fn(Vec3) -> f64,
 ) -> Drawn {
-    let Some(known) = places.known(place) else {
+    let Some(Place { known, share, .. }) = places.known(place) else {
         let direction = plain(random);
         return Drawn { direction, square: square_of(direction), density_per_sr: plain_per_sr(direction) };
     };
-    let (direction, square) = if random.number() < LEARNED_SHARE {
+    let (direction, square) = if random.number() < *share {
         let square = known.drawn(random.pair());
         (direction_of(square), square)
     } else {
         let direction = plain(random);
         (direction, square_of(direction))
     };
-    let density_per_sr = LEARNED_SHARE * known.density_per_sr(square) + (1.0 - LEARNED_SHARE) * plain_per_sr(direction);
+    let density_per_sr = share * known.density_per_sr(square) + (1.0 - share) * plain_per_sr(direction);
     Drawn { direction, square, density_per_sr }
 }
