@@ -19,20 +19,112 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let model = Model::build(&scene, rays.clone(), scene.model.voxel_m.unwrap_or(0.1), 4_000_000_000, &p, &c)?;
         let t_model = began.elapsed().as_secs_f64();
         let settings = Settings::default();
-        let (network, lines) = Network::new(&model, &Quality::MEDIUM, &settings, &p, &c)?;
+        let mut quality = Quality::MEDIUM;
+        let e = |k: &str, or: f64| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
+        quality.spacing = e("SPACING", 0.4) as f32;
+        quality.lines = e("LINES", 20.0) as u32;
+        quality.all_lines = e("ALL_LINES", 42000.0) as u32;
+        quality.neck_lines = e("NECK", 1024.0) as u32;
+        let (mut network, lines) = Network::new(&model, &quality, &settings, &p, &c)?;
         let t_net = began.elapsed().as_secs_f64();
-        let walls = places::at_walls(&network, &lines);
+        if e("FILL", 1.0) > 0.0 {
+            let grounds = &mut network.grounds;
+            grounds.patches.fill_gaps(&grounds.zones);
+        }
+        let network = network;
+        let walls = {
+            let shine = lightvein::guide::shine::Shine::new(&network);
+            places::at_walls(&network, &shine, &lines)
+        };
         let t_walls = began.elapsed().as_secs_f64();
-        let zones = places::in_zones(&network, &lines, 0);
+        let zones = {
+            let shine = lightvein::guide::shine::Shine::new(&network);
+            places::in_zones(&network, &shine, &lines, 0)
+        };
         let nodes = places::at_nodes(&network, &zones);
         let build = began.elapsed().as_secs_f64();
-        let all: Vec<_> = walls.iter().chain(&zones).collect();
+        let shine = lightvein::guide::shine::Shine::new(&network);
+        let g =
+            |r: &str, n: &str| lightvein::flow::network::Gather { rays: e(r, 0.0) as u32, neck_rays: e(n, 0.0) as u32 };
+        let t0 = Instant::now();
+        let own: Vec<lightvein::light::Incident> = if e("SR", 0.0) > 0.0 {
+            use rayon::prelude::*;
+            model
+                .probes_at_sensors(&scene)
+                .par_iter()
+                .enumerate()
+                .map(|(i, probe)| {
+                    let cell = probe.place.map(|n| model.skeleton.graph[n].cell).unwrap_or(0);
+                    let from = probe.position_m + probe.normal.unwrap_or_default() * rays.epsilon_m();
+                    let open = if let Ok(n) = probe.place {
+                        zones[network.grounds.zones.at(n.index() as u32, probe.position_m) as usize].direct_w_m2.clone()
+                    } else {
+                        Vec::new()
+                    };
+                    lightvein::light::Incident {
+                        direct_w_m2: open,
+                        ..places::at_point(
+                            &network,
+                            &shine,
+                            &g("SR", "SN"),
+                            from,
+                            probe.normal,
+                            cell,
+                            [i as f64 * 0.618 % 1.0, i as f64 * 0.7548 % 1.0],
+                        )
+                    }
+                })
+                .collect()
+        } else {
+            Vec::new()
+        };
+        let t1 = t0.elapsed().as_secs_f64();
+        let mut walls = walls;
+        if e("WR", 0.0) > 0.0 {
+            use rayon::prelude::*;
+            walls.par_iter_mut().enumerate().for_each(|(i, wall)| {
+                let cell = network.grounds.zones.cell(network.grounds.patches.list[i].zone);
+                let from = wall.position_m + wall.normal.unwrap() * rays.epsilon_m();
+                wall.lobes = places::at_point(
+                    &network,
+                    &shine,
+                    &g("WR", "WN"),
+                    from,
+                    wall.normal,
+                    cell,
+                    [i as f64 * 0.618 % 1.0, i as f64 * 0.7548 % 1.0],
+                )
+                .lobes;
+            });
+        }
+        println!("sensors own {t1:.3} walls own {:.3}", t0.elapsed().as_secs_f64() - t1);
+        let all: Vec<_> = walls.iter().chain(&zones).chain(&own).collect();
+        let own_of: std::collections::HashMap<_, _> = scene
+            .sensors
+            .iter()
+            .enumerate()
+            .filter(|_| !own.is_empty())
+            .map(|(i, s)| {
+                (
+                    (s.position_m + s.normal.unwrap_or_default() * rays.epsilon_m()).to_array().map(f32::to_bits),
+                    (walls.len() + zones.len() + i) as u32,
+                )
+            })
+            .collect();
         let first = walls.len() as u32;
         let zones_of = &network.grounds.zones;
-        let open = |at: glam::Vec3| model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at)).map(|n| zones_of.at(n, at) + first);
-        let place_of = |at: glam::Vec3, normal: Option<glam::Vec3>| match normal {
-            Some(n) => network.grounds.patches.near(&model, zones_of, at, n).or_else(|| open(at)),
-            None => open(at),
+        let open = |at: glam::Vec3| {
+            model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at)).map(|n| zones_of.at(n, at) + first)
+        };
+        let place_of = |at: glam::Vec3, normal: Option<glam::Vec3>| {
+            if let Some(&n) = own_of.get(&at.to_array().map(f32::to_bits)) {
+                Some(n)
+            } else {
+                match normal {
+                    Some(n) => network.grounds.patches.near(&model, zones_of, at, n).or_else(|| open(at)),
+                    None => open(at),
+                }
+            }
         };
         let guiding = Guiding { places: all, place_of: &place_of };
         println!(
@@ -72,7 +164,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (i, s) in scene.sensors.iter().enumerate().take(400) {
             let equal = vars[0][i] / vars[1][i];
             ratios.push(equal * per[0] / per[1]);
-            if scene.sensors.len() <= 24 {
+            if scene.sensors.len() <= 400 {
                 let reference =
                     scene.reference.get(i).and_then(|r| r.as_ref()).map(|r| r.irradiance_w_m2).unwrap_or(0.0);
                 let r = |k: usize| fields[k].field.readings[i];

@@ -10,6 +10,7 @@
 
 pub mod fit;
 pub mod places;
+pub mod shine;
 
 use crate::light::Incident;
 use glam::Vec3;

@@ -6,18 +6,26 @@
 //! shines. No ray is traced for this but those towards the lights from nodes.
 
 use super::fit::{self, Sample};
+use super::shine::Shine;
 use crate::flow::direct::direct;
-use crate::flow::network::Network;
+use crate::flow::network::gather::{self};
 use crate::flow::network::lines::Line;
 use crate::flow::network::walk::End;
+use crate::flow::network::{Gather, Network};
 use crate::flow::sequence;
 use crate::light::Incident;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use std::f64::consts::PI;
 
-/// What is nearer than this, in edges of a zone, stays where it was seen: turned about a place so near it would leap.
-const LEAST_TURNED_ZONES: f32 = 0.25;
+/// What is nearer to a place than this share of its distance from where it was seen is not turned to the place.
+const NEAREST_SHARE: f32 = 0.25;
+
+/// Patches beside a patch whose lines count for it too, and how much.
+const MOST_BESIDE: usize = 6;
+const BESIDE_COUNTS: f64 = 0.3;
+
+/// Patches look the same way from this cosine on.
+const ALIKE_FROM: f32 = 0.9;
 
 /// Offsets of the sequences that pick points on lines and of shadow rays start here.
 const POINT_OFFSETS: u64 = 1 << 46;
@@ -28,42 +36,54 @@ const SHADOW_OFFSETS: u64 = 1 << 47;
 struct Sight {
     /// Where the line is at the place, metres.
     from_m: Vec3,
-    direction: Vec3,
-    distance_m: f32,
+    /// Where what shines is, metres.
+    to_m: Vec3,
     weight: f64,
 }
 
-/// The light at every patch of the network, at that of its points nearest to its middle.
-pub fn at_walls(network: &Network, lines: &[Line]) -> Vec<Incident> {
-    let patches = &network.grounds.patches;
-    let radiosity_w_m2 = radiosity_w_m2(network);
-    let of_patch = |end: End| if let End::Patch(patch) = end { Some(patch as usize) } else { None };
-    let shines = |end: End| of_patch(end).map_or(0.0, |patch| radiosity_w_m2[patch]);
-
+/// The light at every patch of the network, at that of its points nearest to its middle. What the patches of the same side
+/// beside it see counts too, for they see the same things from a little further on.
+pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Incident> {
+    let grounds = &network.grounds;
+    let patches = &grounds.patches;
     let mut sights: Vec<Vec<Sight>> = vec![Vec::new(); patches.list.len()];
     for line in lines.iter().filter(|line| line.panes.is_empty()) {
         let [first, last] = line.ends;
         let end_m = line.from_m + line.length_m * line.direction;
-        let ways = [(first, last, line.from_m, line.direction), (last, first, end_m, -line.direction)];
-        for (here, there, from_m, direction) in ways {
-            let weight = line.weight_m2 * shines(there);
-            if let Some(patch) = of_patch(here).filter(|_| weight > 0.0) {
-                sights[patch].push(Sight { from_m, direction, distance_m: line.length_m, weight });
+        let ways = [(first, last, line.from_m, end_m), (last, first, end_m, line.from_m)];
+        for (here, there, from_m, to_m) in ways {
+            let (End::Patch(patch), End::Patch(other)) = (here, there) else { continue };
+            let weight = line.weight_m2 * shine.at_w_m2(other, to_m);
+            if weight > 0.0 {
+                sights[patch as usize].push(Sight { from_m, to_m, weight });
             }
         }
     }
-    let incident = |(number, sights): (usize, &Vec<Sight>)| {
+    let incident = |(number, own): (usize, &Vec<Sight>)| {
         let patch = &patches.list[number];
         let starts = &patches.starts[patch.starts.clone()];
         let middle_m = starts.iter().map(|start| start.position_m).sum::<Vec3>() / starts.len() as f32;
         let apart_m2 = |at_m: Vec3| at_m.distance_squared(middle_m);
         let nearest = starts.iter().min_by(|a, b| apart_m2(a.position_m).total_cmp(&apart_m2(b.position_m)));
         let (position_m, normal) = nearest.map_or((middle_m, Vec3::Z), |start| (start.position_m, start.normal));
-        let reach_m = (patch.area_m2 as f32).sqrt();
+        let mut samples = Vec::new();
+        turn(own, position_m, Some(normal), 1.0 / patch.area_m2, &mut samples);
+        for zone in grounds.zones.beside(patch.zone, 1).take(MOST_BESIDE) {
+            let beside = starts.first().and_then(|start| patches.like(zone, normal, start.answer));
+            let Some(beside) = beside.map(|beside| beside as usize).filter(|&beside| beside != number) else {
+                continue;
+            };
+            let other = &patches.list[beside];
+            let is_alike =
+                patches.starts.get(other.starts.start).is_some_and(|start| start.normal.dot(normal) > ALIKE_FROM);
+            if other.zone == zone && is_alike {
+                turn(&sights[beside], position_m, Some(normal), BESIDE_COUNTS / other.area_m2, &mut samples);
+            }
+        }
         Incident {
             position_m,
             normal: Some(normal),
-            lobes: fit::lobes(&turned(sights, position_m, reach_m)),
+            lobes: fit::lobes(&samples),
             reflected_w_m2: network.reflected_w_m2.iter().map(|column| column[number]).sum::<f64>() as f32,
             direct_w_m2: (network.landings.iter())
                 .map(|landing| (landing.flux_w[number] / patch.area_m2) as f32)
@@ -73,34 +93,63 @@ pub fn at_walls(network: &Network, lines: &[Line]) -> Vec<Incident> {
     sights.par_iter().enumerate().map(incident).collect()
 }
 
+/// The light at a point of a cell, on a surface of that normal or in the open, by rays of its own: where one place is worth as
+/// much, a sensor or a pixel.
+pub fn at_point(
+    network: &Network,
+    shine: &Shine,
+    rays: &Gather,
+    from_m: Vec3,
+    normal: Option<Vec3>,
+    cell: u32,
+    offset: [f64; 2],
+) -> Incident {
+    let mut samples = Vec::new();
+    let mut reflected_w_m2 = 0.0;
+    for sight in gather::sights(network, rays, from_m, normal, cell, offset) {
+        let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
+        let sends_w_m2 = shine.at_w_m2(sight.patch, sight.at.position_m);
+        let weight = sight.weight * cosine * sends_w_m2;
+        reflected_w_m2 += weight;
+        if weight > 0.0 {
+            let distance_m = sight.at.position_m.distance(from_m);
+            samples.push(Sample { direction: sight.direction, weight: weight as f32, distance_m });
+        }
+    }
+    Incident {
+        position_m: from_m,
+        normal,
+        lobes: fit::lobes(&samples),
+        reflected_w_m2: reflected_w_m2 as f32,
+        direct_w_m2: Vec::new(),
+    }
+}
+
 /// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
 /// there.
-pub fn in_zones(network: &Network, lines: &[Line], seed: u64) -> Vec<Incident> {
+pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> Vec<Incident> {
     let grounds = &network.grounds;
     let (model, zones) = (grounds.model, &grounds.zones);
-    let radiosity_w_m2 = radiosity_w_m2(network);
-    let shines = |end: End| if let End::Patch(patch) = end { radiosity_w_m2[patch as usize] } else { 0.0 };
-
     // One place a line, anywhere on it, stands for its whole length.
     let place = |(number, line): (usize, &Line)| {
         let along_m = sequence::offset(seed, POINT_OFFSETS + number as u64)[0] as f32 * line.length_m;
         let at_m = line.from_m + along_m * line.direction;
         let node = model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at_m))?;
-        Some((zones.at(node, at_m), at_m, along_m))
+        Some((zones.at(node, at_m), at_m))
     };
-    let places: Vec<Option<(u32, Vec3, f32)>> = lines.par_iter().enumerate().map(place).collect();
+    let places: Vec<Option<(u32, Vec3)>> = lines.par_iter().enumerate().map(place).collect();
     let mut crossed = vec![Crossed::default(); zones.count];
     for (line, place) in lines.iter().zip(places) {
-        let Some((zone, at_m, along_m)) = place.filter(|_| line.panes.is_empty()) else { continue };
+        let Some((zone, at_m)) = place.filter(|_| line.panes.is_empty()) else { continue };
         let crossed = &mut crossed[zone as usize];
         let weight_m3 = line.weight_m2 * f64::from(line.length_m);
         crossed.track_m3 += weight_m3;
         crossed.moment += weight_m3 * at_m.as_dvec3();
-        let ways = [(line.ends[0], -1.0, along_m), (line.ends[1], 1.0, line.length_m - along_m)];
-        for (end, sign, distance_m) in ways {
-            let weight = weight_m3 * shines(end);
+        let end_m = line.from_m + line.length_m * line.direction;
+        for (end, to_m) in [(line.ends[0], line.from_m), (line.ends[1], end_m)] {
+            let weight = if let End::Patch(patch) = end { weight_m3 * shine.at_w_m2(patch, to_m) } else { 0.0 };
             if weight > 0.0 {
-                crossed.sights.push(Sight { from_m: at_m, direction: sign * line.direction, distance_m, weight });
+                crossed.sights.push(Sight { from_m: at_m, to_m, weight });
             }
         }
     }
@@ -113,10 +162,12 @@ pub fn in_zones(network: &Network, lines: &[Line], seed: u64) -> Vec<Incident> {
             direct(model, position_m, None, emitter, 1, offset).value_w_m2 as f32
         };
         let is_seen = crossed.track_m3 > 0.0;
+        let mut samples = Vec::new();
+        turn(&crossed.sights, position_m, None, 1.0, &mut samples);
         Incident {
             position_m,
             normal: None,
-            lobes: fit::lobes(&turned(&crossed.sights, position_m, (0.5 * track_m3).cbrt() as f32)),
+            lobes: fit::lobes(&samples),
             reflected_w_m2: (2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3) as f32,
             direct_w_m2: (0..model.sources.emitters.len())
                 .map(|emitter| if is_seen { straight(emitter) } else { 0.0 })
@@ -147,26 +198,14 @@ struct Crossed {
     sights: Vec<Sight>,
 }
 
-/// What each patch sends out by all reflections, W/m2.
-fn radiosity_w_m2(network: &Network) -> Vec<f64> {
-    let of = |(number, patch): (usize, &crate::flow::network::patches::Patch)| {
-        let landed_w: f64 = network.landings.iter().map(|landing| landing.reflected_w[number]).sum();
-        let reflected_w_m2: f64 = network.reflected_w_m2.iter().map(|column| column[number]).sum();
-        landed_w / patch.area_m2 + patch.reflectance * reflected_w_m2
-    };
-    network.grounds.patches.list.iter().enumerate().map(of).collect()
-}
-
-/// What was seen from around a place as the place sees it.
-fn turned(sights: &[Sight], place_m: Vec3, zone_m: f32) -> Vec<Sample> {
-    let turned = |sight: &Sight| {
-        let to_m = sight.from_m + sight.distance_m * sight.direction - place_m;
+/// What was seen from around a place, as the place sees it.
+fn turn(sights: &[Sight], place_m: Vec3, normal: Option<Vec3>, factor: f64, samples: &mut Vec<Sample>) {
+    samples.extend(sights.iter().filter_map(|sight| {
+        let to_m = sight.to_m - place_m;
         let distance_m = to_m.length();
-        let (direction, distance_m) = match distance_m > LEAST_TURNED_ZONES * zone_m {
-            true => (to_m / distance_m, distance_m),
-            false => (sight.direction, sight.distance_m),
-        };
-        Sample { direction, weight: (sight.weight / PI) as f32, distance_m }
-    };
-    sights.iter().map(turned).collect()
+        // What is much nearer to the place than to where it was seen from would fill its view, and is left to the cosine.
+        let direction = (distance_m > NEAREST_SHARE * sight.to_m.distance(sight.from_m)).then(|| to_m / distance_m)?;
+        let is_seen = normal.is_none_or(|normal| normal.dot(direction) > 0.0);
+        is_seen.then_some(Sample { direction, weight: (factor * sight.weight) as f32, distance_m })
+    }));
 }

@@ -210,7 +210,10 @@ impl Patches {
         let lattice = &model.voxels.lattice;
         let before =
             |out: f32| model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * (out * lattice.voxel_m)));
-        let node = STEPS_OUT_VOXELS.into_iter().find_map(before)?;
+        let node = STEPS_OUT_VOXELS
+            .into_iter()
+            .find_map(before)
+            .or_else(|| beside_corner(model, point_m, normal).first().map(|&(_, node, _)| node))?;
         let patch = self.like(zones.at(node, point_m), normal, Answer { reflects: 1.0, passes: 0.0 })?;
         let start = self.starts.get(self.list.get(patch as usize)?.starts.start)?;
         (start.normal.dot(normal) > LEAST_ALIKE).then_some(patch)
@@ -258,6 +261,16 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3, met: bool) -> Option<
         // The void behind a thin wall is not before its inner side.
         return (is_sure || model.rays.clear(lifted_m, at_m)).then_some(node);
     }
+    let seen = beside_corner(model, point_m, normal).into_iter().take(MOST_LOOKS);
+    seen.map(|(_, node, centre_m)| (node, centre_m))
+        .find(|(_, centre_m)| model.rays.clear(lifted_m, *centre_m))
+        .map(|(node, _)| node)
+}
+
+/// The void around a place that lies in a corner of walls: squared distance, node and centre of each voxel in front of the
+/// place, the nearest first.
+fn beside_corner(model: &Model, point_m: Vec3, normal: Vec3) -> Vec<(f32, u32, Vec3)> {
+    let lattice = &model.voxels.lattice;
     let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
     let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
     for step in 0..27 {
@@ -269,8 +282,7 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3, met: bool) -> Option<
         }
     }
     beside.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let seen = beside.iter().take(MOST_LOOKS).find(|(.., centre_m)| model.rays.clear(lifted_m, *centre_m));
-    seen.map(|&(_, node, _)| node)
+    beside
 }
 
 /// The node of the void that a ray of that length left before it came to a point.

@@ -53,7 +53,12 @@ impl Mixture {
     /// The lobes as they are seen from a point near the place.
     pub(super) fn seen_from(&self, point_m: Vec3) -> Seen {
         let none = Lobe { direction: Vec3::Z, concentration: 0.0, weight: 0.0, distance_m: 1.0 };
-        let mut seen = Seen { is_open: self.is_open, lobes: [none; MOST_LOBES], factors: [0.0; MOST_LOBES], count: self.lobes.len() };
+        let mut seen = Seen {
+            is_open: self.is_open,
+            lobes: [none; MOST_LOBES],
+            factors: [0.0; MOST_LOBES],
+            count: self.lobes.len(),
+        };
         let moved_m = point_m - self.position_m;
         for (number, lobe) in self.lobes.iter().enumerate() {
             let lobe = lobe.seen_after(moved_m);
@@ -97,7 +102,9 @@ impl Seen {
         }
         let direction = self.lobes[number].drawn(random.pair());
         match normal {
-            Some(normal) if !self.is_open && normal.dot(direction) < 0.0 => direction - 2.0 * normal.dot(direction) * normal,
+            Some(normal) if !self.is_open && normal.dot(direction) < 0.0 => {
+                direction - 2.0 * normal.dot(direction) * normal
+            }
             _ => direction,
         }
     }
@@ -106,7 +113,9 @@ impl Seen {
     pub(super) fn density_per_sr(&self, direction: Vec3, normal: Option<Vec3>) -> f64 {
         let above = self.all_around_per_sr(direction);
         match normal {
-            Some(normal) if !self.is_open => above + self.all_around_per_sr(direction - 2.0 * normal.dot(direction) * normal),
+            Some(normal) if !self.is_open => {
+                above + self.all_around_per_sr(direction - 2.0 * normal.dot(direction) * normal)
+            }
             _ => above,
         }
     }

@@ -14,17 +14,6 @@ use crate::trace::random::Random;
 use glam::Vec3;
 use std::f64::consts::PI;
 
-
-
-
-
-
-
-
-
-
-
-
 /// Turns before roulette where the guide says nothing, as in the plain tracer.
 const TURNS_BEFORE_ROULETTE: u32 = 4;
 
@@ -40,7 +29,11 @@ pub(super) struct Paths<'a> {
 }
 
 thread_local! { static LOG: std::cell::RefCell<String> = const { std::cell::RefCell::new(String::new()) }; }
-fn log(t: impl FnOnce() -> String) { if env("LOGAT", 0.0) > 0.0 { LOG.with_borrow_mut(|l| l.push_str(&t())); } }
+fn log(t: impl FnOnce() -> String) {
+    if env("LOGAT", 0.0) > 0.0 {
+        LOG.with_borrow_mut(|l| l.push_str(&t()));
+    }
+}
 
 impl Paths<'_> {
     /// One sample of the (scalar) irradiance and the net flux at a sensor.
@@ -75,7 +68,16 @@ impl Paths<'_> {
             let goal = expected_w_m2 * density_per_sr / cosine.max(1e-3);
             log(|| format!("start dir {direction:.2} density {density_per_sr:.3} expected {expected_w_m2:.4}\n"));
             let radiance_w_m2_sr = self.reflected(position_m, direction, goal, random);
-            if env("LOGAT", 0.0) > 0.0 && cosine * radiance_w_m2_sr / density_per_sr > env("LOGAT", 0.0) * expected_w_m2 { LOG.with_borrow(|l| eprintln!("{} {:.1} x expected\n{l}", sensor.id, cosine * radiance_w_m2_sr / density_per_sr / expected_w_m2)); }
+            if env("LOGAT", 0.0) > 0.0 && cosine * radiance_w_m2_sr / density_per_sr > env("LOGAT", 0.0) * expected_w_m2
+            {
+                LOG.with_borrow(|l| {
+                    eprintln!(
+                        "{} {:.1} x expected\n{l}",
+                        sensor.id,
+                        cosine * radiance_w_m2_sr / density_per_sr / expected_w_m2
+                    )
+                });
+            }
             add(direction, radiance_w_m2_sr / density_per_sr);
         }
         sample
@@ -108,7 +110,10 @@ impl Paths<'_> {
                     self.sampler.choose(position_m, normal, random.number())?.0
                 };
                 let plain = self.sampler.chance(emitter, position_m, normal);
-                (emitter, env("GUIDED_LAMPS", 0.75) * mixture.chance(emitter) + (1.0 - env("GUIDED_LAMPS", 0.75)) * plain)
+                (
+                    emitter,
+                    env("GUIDED_LAMPS", 0.75) * mixture.chance(emitter) + (1.0 - env("GUIDED_LAMPS", 0.75)) * plain,
+                )
             }
         };
         let light = self.sampler.sample(emitter, position_m, random.pair())?;
@@ -135,13 +140,21 @@ impl Paths<'_> {
             let guided = mixture.filter(|_| worth > 0.0);
 
             if reflectance > 0.0 {
-                let asked =
-                    guided.map_or(1.0, |mixture| (worth * mixture.direct_w_m2 / env("ASKED_SHARE", 0.25)).clamp(env("LEAST_ASKED", 0.1), 1.0));
+                let asked = guided.map_or(1.0, |mixture| {
+                    (worth * mixture.direct_w_m2 / env("ASKED_SHARE", 0.25)).clamp(env("LEAST_ASKED", 0.1), 1.0)
+                });
                 if let Some((towards, irradiance_w_m2)) =
                     self.direct(at_m + lift_m, Some(facing), mixture, asked, random)
                 {
                     let cosine = f64::from(facing.dot(towards));
-                    log(|| format!("   NEE at {at_m:.2} asked {asked:.2} E {:.4} place direct {:.4} contributes {:.2}\n", cosine * irradiance_w_m2 * asked, mixture.map_or(-1.0, |m| m.direct_w_m2), worth * cosine * irradiance_w_m2));
+                    log(|| {
+                        format!(
+                            "   NEE at {at_m:.2} asked {asked:.2} E {:.4} place direct {:.4} contributes {:.2}\n",
+                            cosine * irradiance_w_m2 * asked,
+                            mixture.map_or(-1.0, |m| m.direct_w_m2),
+                            worth * cosine * irradiance_w_m2
+                        )
+                    });
                     radiance_w_m2_sr += weight * reflectance / PI * cosine * irradiance_w_m2;
                 }
             }
@@ -150,7 +163,8 @@ impl Paths<'_> {
             turns += 1;
             weight *= goes_on;
             let survival = match guided.filter(|_| transmittance <= 0.0) {
-                Some(mixture) => (worth * mixture.reflected_w_m2).clamp(env("LEAST_SURVIVAL", 0.1), env("MOST_SURVIVAL", 0.99)),
+                Some(mixture) => (env("SURV_SCALE", 1.0) * (worth * mixture.reflected_w_m2).powf(env("SURV_POW", 1.0)))
+                    .clamp(env("LEAST_SURVIVAL", 0.1), env("MOST_SURVIVAL", 0.99)),
                 None if turns > TURNS_BEFORE_ROULETTE => goes_on.min(env("MOST_SURVIVAL", 0.99)),
                 None => 1.0,
             };
@@ -178,7 +192,13 @@ impl Paths<'_> {
             if plain_per_sr <= 0.0 {
                 break;
             }
-            log(|| format!("  at {at_m:.2} n {facing:.1} survival {survival:.2} exp {:.2} next {next:.2} plain {plain_per_sr:.3} mix {density_per_sr:.3} factor {:.2}\n", mixture.map_or(-1.0, |m| worth * m.reflected_w_m2), plain_per_sr / density_per_sr));
+            log(|| {
+                format!(
+                    "  at {at_m:.2} n {facing:.1} survival {survival:.2} exp {:.2} next {next:.2} plain {plain_per_sr:.3} mix {density_per_sr:.3} factor {:.2}\n",
+                    mixture.map_or(-1.0, |m| worth * m.reflected_w_m2),
+                    plain_per_sr / density_per_sr
+                )
+            });
             weight *= plain_per_sr / density_per_sr;
             direction = next;
         }
@@ -206,8 +226,8 @@ fn drawn(
         return (direction, plain_per_sr(direction));
     };
     let direction = if random.number() < env("GUIDED_SHARE", 0.5) { seen.drawn(normal, random) } else { plain(random) };
-    let density_per_sr =
-        env("GUIDED_SHARE", 0.5) * seen.density_per_sr(direction, normal) + (1.0 - env("GUIDED_SHARE", 0.5)) * plain_per_sr(direction);
+    let density_per_sr = env("GUIDED_SHARE", 0.5) * seen.density_per_sr(direction, normal)
+        + (1.0 - env("GUIDED_SHARE", 0.5)) * plain_per_sr(direction);
     (direction, density_per_sr)
 }
 
