@@ -3,6 +3,7 @@
 use glam::Vec3;
 use lightvein::flow::network::{Network, Quality};
 use lightvein::guide::places;
+use lightvein::guide::shine::Shine;
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::{Guiding, Incident, Settings, Sources};
 use lightvein::model::Model;
@@ -65,18 +66,25 @@ fn guided<'a>(stage: &'a Stage<'a>) -> Result<Run<'a>, Box<dyn Error>> {
     };
     // The network borrows the model and both serve the runs: they live as long as the program.
     let model: &Model = Box::leak(Box::new(model));
-    let (network, lines) = Network::new(model, &Quality::MEDIUM, &Settings::default(), quiet, cancel)?;
-    let walls = places::at_walls(&network, &lines);
-    let nodes = places::at_nodes(&network, &lines, 0);
+    let quality = Quality { spacing: 0.4, lines: 20, all_lines: 42_000, neck_lines: 1024, ..Quality::MEDIUM };
+    let (mut network, lines) = Network::new(model, &quality, &Settings::default(), quiet, cancel)?;
+    let grounds = &mut network.grounds;
+    grounds.patches.fill_gaps(&grounds.zones);
+    let shine = Shine::new(&network);
+    let walls = places::at_walls(&network, &shine, &lines);
+    let open = places::in_zones(&network, &shine, &lines, 0);
+    drop(shine);
     Ok(Box::new(move |seed, samples| {
-        let first_node = walls.len() as u32;
-        let (patches, zones) = (&network.grounds.patches, &network.grounds.zones);
-        let node_at = |at_m: Vec3| model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at_m));
-        let place_of = |at_m: Vec3, normal: Option<Vec3>| match normal {
-            Some(normal) => patches.near(model, zones, at_m, normal),
-            None => node_at(at_m).map(|node| node + first_node),
+        let (patches, zones, first_open) = (&network.grounds.patches, &network.grounds.zones, walls.len() as u32);
+        let in_open = |at_m: Vec3| {
+            let node = model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at_m))?;
+            Some(zones.at(node, at_m) + first_open)
         };
-        let places: Vec<&Incident> = walls.iter().chain(&nodes).collect();
+        let place_of = |at_m: Vec3, normal: Option<Vec3>| {
+            let on_wall = normal.and_then(|normal| patches.near(model, zones, at_m, normal));
+            on_wall.or_else(|| in_open(at_m))
+        };
+        let places: Vec<&Incident> = walls.iter().chain(&open).collect();
         let guiding = Guiding { places, place_of: &place_of };
         let settings = Settings { seed, samples, ..Settings::default() };
         trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())

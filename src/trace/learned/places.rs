@@ -68,7 +68,14 @@ pub(super) struct Sight {
 impl Places {
     /// Nothing known, for that many sensors and surfaces within those bounds.
     pub(super) fn new(sensors: usize, (low_m, high_m): (Vec3, Vec3)) -> Self {
-        let blank = Place { known: Directions::blank(), share: 0.0, seen: Directions::blank(), squares: 0.0, samples: 0.0, depth: 0 };
+        let blank = Place {
+            known: Directions::blank(),
+            share: 0.0,
+            seen: Directions::blank(),
+            squares: 0.0,
+            samples: 0.0,
+            depth: 0,
+        };
         Self {
             list: vec![blank; sensors + SIDES],
             nodes: (0..SIDES).map(|side| Node::Place((sensors + side) as u32)).collect(),
