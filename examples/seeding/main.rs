@@ -1,11 +1,13 @@
 //! Does a guide from the skeleton help a path tracer? Error in equal time and by equal samples, for `docs/seeding.md`.
 //!
 //!     cargo run --release --example seeding -- [SCENE.toml ...] [-o FOLDER] [--seconds 60] [--measure 20] [--truth 60]
+//!         [--busy]
 //!
 //! Contestants: `plain` (next-event estimation and roulette alone), `guided` (by lobes from the network; voxels, skeleton and
 //! guide count into its time) and `learned` (an SD-tree trained while it renders; learning counts into its time). Without scenes:
 //! those of [`SCENES`]; a scene that cannot be read is skipped and named. How errors are taken is told in `measure`. Writes
-//! `seeding.csv`, a row a sensor, budget and contestant, and `seeding.svg`. About five minutes a scene, on a quiet machine.
+//! `seeding.csv`, a row a sensor, budget and contestant, and `seeding.svg`. About five minutes a scene, on a
+//! quiet machine; on another `--busy` counts the processors' time.
 
 mod contestants;
 mod measure;
@@ -15,7 +17,7 @@ use lightvein::export::chart::loglog;
 use lightvein::export::whole_file;
 use lightvein::job::{Cancel, Quiet};
 use lightvein::scene::Scene;
-use measure::Effort;
+use measure::{Clock, Effort};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -66,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn options() -> Result<Options, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let effort = Effort { longest_s: 60.0, measure_s: 20.0, truth_s: 60.0 };
+    let effort = Effort { clock: Clock::Wall, longest_s: 60.0, measure_s: 20.0, truth_s: 60.0 };
     let mut options = Options { scenes: Vec::new(), out: root.join("docs/charts"), effort };
     let mut args = std::env::args_os().skip(1).map(PathBuf::from);
     while let Some(arg) = args.next() {
@@ -76,6 +78,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             Some("--seconds") => options.effort.longest_s = seconds(&value()?)?,
             Some("--measure") => options.effort.measure_s = seconds(&value()?)?,
             Some("--truth") => options.effort.truth_s = seconds(&value()?)?,
+            Some("--busy") => options.effort.clock = Clock::Processors,
             Some(flag) if flag.starts_with('-') => return Err(format!("{flag} is not known").into()),
             _ => options.scenes.push(arg),
         }

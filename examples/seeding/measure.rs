@@ -19,6 +19,9 @@ use lightvein::trace::Traced;
 use std::error::Error;
 use std::time::Instant;
 
+/// Ticks of a second in which Linux counts a process's time.
+const TICKS: f64 = 100.0;
+
 /// Budgets, seconds.
 pub const BUDGETS_S: [f64; 3] = [1.0, 10.0, 60.0];
 
@@ -39,8 +42,18 @@ const LARGEST_TRUSTED_SHARE: f64 = 0.05;
 const SEED: u64 = 1;
 const TRUTH_SEED: u64 = 1 << 32;
 
-/// How long to measure, seconds.
+/// By what time goes.
+#[derive(Clone, Copy)]
+pub enum Clock {
+    Wall,
+    /// The processors' time over the number of threads: for a machine that others use too. What one thread does alone counts
+    /// too little.
+    Processors,
+}
+
+/// How long to measure, seconds, and by which clock.
 pub struct Effort {
+    pub clock: Clock,
     /// The longest budget.
     pub longest_s: f64,
     /// For each contestant's slices.
@@ -94,15 +107,16 @@ struct Ready<'a> {
 /// Measures all contestants in a scene.
 pub fn scene(scene: &Scene, effort: &Effort) -> Result<Finding, Box<dyn Error>> {
     let stage = Stage::of(scene);
-    let ready: Vec<Ready> = contestants(&stage).iter().map(prepared).collect::<Result<_, _>>()?;
+    let ready: Vec<Ready> =
+        contestants(&stage).iter().map(|one| prepared(one, effort.clock)).collect::<Result<_, _>>()?;
     let independent: Vec<&Ready> = ready.iter().filter(|one| !one.learns).collect();
 
-    let (truth_w_m2, truth_error) = truth(&slices(&independent, TRUTH_SEED, effort.truth_s));
-    let mut measured = slices(&independent, SEED, effort.measure_s).into_iter().peekable();
+    let (truth_w_m2, truth_error) = truth(&slices(&independent, TRUTH_SEED, effort.truth_s, effort.clock));
+    let mut measured = slices(&independent, SEED, effort.measure_s, effort.clock).into_iter().peekable();
     let budgets_s: Vec<f64> = BUDGETS_S.into_iter().filter(|&budget_s| budget_s <= effort.longest_s).collect();
     let outcomes = ready.iter().map(|one| match measured.next_if(|_| !one.learns) {
         Some(slices) => outcome_of_slices(one, &slices, &truth_w_m2, &budgets_s),
-        None => outcome_of_learning(one, &truth_w_m2, &budgets_s),
+        None => outcome_of_learning(one, &truth_w_m2, &budgets_s, effort.clock),
     });
     let outcomes = outcomes.collect();
 
@@ -117,11 +131,11 @@ pub fn scene(scene: &Scene, effort: &Effort) -> Result<Finding, Box<dyn Error>> 
     Ok(Finding { scene: scene.name.clone(), sensors, truth_w_m2, truth_error, off_reference, budgets_s, outcomes })
 }
 
-fn prepared<'a>(contestant: &Contestant<'a>) -> Result<Ready<'a>, Box<dyn Error>> {
+fn prepared<'a>(contestant: &Contestant<'a>, clock: Clock) -> Result<Ready<'a>, Box<dyn Error>> {
     let mut seconds = Vec::new();
     let mut last = None;
     for _ in 0..PREPARATIONS {
-        let (took_s, run) = timed(|| (contestant.prepare)());
+        let (took_s, run) = clock.timed(|| (contestant.prepare)());
         seconds.push(took_s);
         last = Some(run?);
     }
@@ -131,13 +145,14 @@ fn prepared<'a>(contestant: &Contestant<'a>) -> Result<Ready<'a>, Box<dyn Error>
 }
 
 /// Slices of each for so many seconds, in turns.
-fn slices(of: &[&Ready], first_seed: u64, seconds: f64) -> Vec<Slices> {
-    let begin = |one: &&Ready| Slices { samples: samples_within(&one.run, SLICE_S), seconds: 0.0, runs: Vec::new() };
+fn slices(of: &[&Ready], first_seed: u64, seconds: f64, clock: Clock) -> Vec<Slices> {
+    let begin =
+        |one: &&Ready| Slices { samples: samples_within(&one.run, SLICE_S, clock), seconds: 0.0, runs: Vec::new() };
     let mut all: Vec<Slices> = of.iter().map(begin).collect();
     let rounds = (seconds / SLICE_S).ceil().max(2.0) as u64;
     for round in 0..rounds {
         for (one, slices) in of.iter().zip(&mut all) {
-            let (took_s, traced) = timed(|| (one.run)(first_seed + round, slices.samples));
+            let (took_s, traced) = clock.timed(|| (one.run)(first_seed + round, slices.samples));
             slices.seconds += took_s;
             slices.runs.push(traced);
         }
@@ -146,10 +161,10 @@ fn slices(of: &[&Ready], first_seed: u64, seconds: f64) -> Vec<Slices> {
 }
 
 /// How many samples a sensor take about so long.
-fn samples_within(run: &Run, seconds: f64) -> u32 {
+fn samples_within(run: &Run, seconds: f64, clock: Clock) -> u32 {
     let mut samples = 16_u32;
     loop {
-        let (took_s, _) = timed(|| run(0, samples));
+        let (took_s, _) = clock.timed(|| run(0, samples));
         if took_s > 0.2 * seconds || samples > 1 << 28 {
             return ((f64::from(samples) * seconds / took_s) as u32).max(1);
         }
@@ -217,8 +232,8 @@ fn outcome_of_slices(one: &Ready, slices: &Slices, truth_w_m2: &[f64], budgets_s
     }
 }
 
-fn outcome_of_learning(one: &Ready, truth_w_m2: &[f64], budgets_s: &[f64]) -> Outcome {
-    let mut samples = samples_within(&one.run, SLICE_S);
+fn outcome_of_learning(one: &Ready, truth_w_m2: &[f64], budgets_s: &[f64], clock: Clock) -> Outcome {
+    let mut samples = samples_within(&one.run, SLICE_S, clock);
     let mut per_sample_s = SLICE_S / f64::from(samples);
     let (mut squares, mut is_doubtful) = (Vec::new(), vec![false; truth_w_m2.len()]);
     let mut seed = SEED;
@@ -229,7 +244,7 @@ fn outcome_of_learning(one: &Ready, truth_w_m2: &[f64], budgets_s: &[f64]) -> Ou
         let mut took_s = 0.0;
         for _ in 0..count {
             samples = ((budget_s - one.prepare_s).max(0.0) / per_sample_s).max(1.0) as u32;
-            let (run_s, traced) = timed(|| (one.run)(seed, samples));
+            let (run_s, traced) = clock.timed(|| (one.run)(seed, samples));
             per_sample_s = run_s / f64::from(samples);
             took_s += run_s;
             runs.push(traced);
@@ -264,11 +279,27 @@ fn own_square(runs: &[Traced], sensor: usize, truth_w_m2: f64) -> f64 {
     errors.map(|error| error * error).sum::<f64>() / runs.len() as f64
 }
 
-/// How long something takes, seconds, and what it makes.
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let begin = Instant::now();
-    let made = work();
-    (begin.elapsed().as_secs_f64(), made)
+impl Clock {
+    /// How long something takes, seconds, and what it makes.
+    fn timed<T>(self, work: impl FnOnce() -> T) -> (f64, T) {
+        let (begin, begin_s) = (Instant::now(), processors_s());
+        let made = work();
+        let wall_s = begin.elapsed().as_secs_f64();
+        match (self, begin_s, processors_s()) {
+            (Self::Processors, Some(begin_s), Some(end_s)) => {
+                ((end_s - begin_s).max(0.5 / TICKS) / rayon::current_num_threads() as f64, made)
+            }
+            _ => (wall_s, made),
+        }
+    }
+}
+
+/// What this process took of all processors, seconds; `None` where the system does not tell.
+fn processors_s() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = text.rsplit(')').next()?.split_whitespace().collect();
+    let ticks = |at: usize| fields.get(at)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) / TICKS)
 }
 
 /// The middle of the values that are numbers; not a number where there are none.
