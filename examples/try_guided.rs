@@ -8,6 +8,11 @@ use lightvein::scene::Scene;
 use lightvein::trace::guided::trace_guided;
 use lightvein::trace::trace;
 use std::{path::Path, sync::Arc, time::Instant};
+fn cpu() -> f64 {
+    let s = std::fs::read_to_string("/proc/self/stat").unwrap();
+    let f: Vec<&str> = s.rsplit(')').next().unwrap().split_whitespace().collect();
+    (f[11].parse::<f64>().unwrap() + f[12].parse::<f64>().unwrap()) / 200.0
+}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seconds: f64 = std::env::var("SECONDS_EACH").ok().and_then(|s| s.parse().ok()).unwrap_or(4.0);
@@ -85,48 +90,36 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             walls.par_iter_mut().enumerate().for_each(|(i, wall)| {
                 let cell = network.grounds.zones.cell(network.grounds.patches.list[i].zone);
                 let from = wall.position_m + wall.normal.unwrap() * rays.epsilon_m();
-                wall.lobes = places::at_point(
-                    &network,
-                    &shine,
-                    &g("WR", "WN"),
-                    from,
-                    wall.normal,
-                    cell,
-                    [i as f64 * 0.618 % 1.0, i as f64 * 0.7548 % 1.0],
-                )
-                .lobes;
+                *wall = lightvein::light::Incident {
+                    reflected_w_m2: wall.reflected_w_m2,
+                    direct_w_m2: wall.direct_w_m2.clone(),
+                    ..places::at_point(
+                        &network,
+                        &shine,
+                        &g("WR", "WN"),
+                        from,
+                        wall.normal,
+                        cell,
+                        [i as f64 * 0.618 % 1.0, i as f64 * 0.7548 % 1.0],
+                    )
+                };
             });
         }
         println!("sensors own {t1:.3} walls own {:.3}", t0.elapsed().as_secs_f64() - t1);
         let all: Vec<_> = walls.iter().chain(&zones).chain(&own).collect();
-        let own_of: std::collections::HashMap<_, _> = scene
-            .sensors
-            .iter()
-            .enumerate()
-            .filter(|_| !own.is_empty())
-            .map(|(i, s)| {
-                (
-                    (s.position_m + s.normal.unwrap_or_default() * rays.epsilon_m()).to_array().map(f32::to_bits),
-                    (walls.len() + zones.len() + i) as u32,
-                )
-            })
-            .collect();
-        let first = walls.len() as u32;
         let zones_of = &network.grounds.zones;
         let open = |at: glam::Vec3| {
             model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at)).map(|n| zones_of.at(n, at) + first)
         };
-        let place_of = |at: glam::Vec3, normal: Option<glam::Vec3>| {
-            if let Some(&n) = own_of.get(&at.to_array().map(f32::to_bits)) {
-                Some(n)
-            } else {
-                match normal {
-                    Some(n) => network.grounds.patches.near(&model, zones_of, at, n).or_else(|| open(at)),
-                    None => open(at),
-                }
-            }
+        let place_of = |at: glam::Vec3, normal: Option<glam::Vec3>| match normal {
+            Some(n) => network.grounds.patches.near(&model, zones_of, at, n).or_else(|| open(at)),
+            None => open(at),
         };
-        let guiding = Guiding { places: all, place_of: &place_of };
+        let guiding = Guiding {
+            places: all,
+            at_sensors: (0..own.len()).map(|i| (walls.len() + zones.len() + i) as u32).collect(),
+            place_of: &place_of,
+        };
         println!(
             "== {path}: {} walls {} nodes {} lines; model {t_model:.3} net {:.3} walls {:.3} nodes {:.3}",
             walls.len(),
@@ -139,13 +132,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let sources = Sources::of(&scene);
         let timed = |guided: bool, samples: u32, seed: u64| {
             let settings = Settings { samples, seed, ..settings };
-            let began = Instant::now();
+            let began = cpu();
             let t = if guided {
                 trace_guided(&scene, &rays, &sources, &guiding, &settings, &p, &c)
             } else {
                 trace(&scene, &rays, &sources, &settings, &p, &c)
             };
-            (t.unwrap(), began.elapsed().as_secs_f64())
+            (t.unwrap(), cpu() - began)
         };
         let mut per = [0.0; 2];
         let mut vars = Vec::new();

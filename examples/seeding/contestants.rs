@@ -85,7 +85,7 @@ fn guided<'a>(stage: &'a Stage<'a>) -> Result<Run<'a>, Box<dyn Error>> {
             on_wall.or_else(|| in_open(at_m))
         };
         let places: Vec<&Incident> = walls.iter().chain(&open).collect();
-        let guiding = Guiding { places, place_of: &place_of };
+        let guiding = Guiding { places, at_sensors: Vec::new(), place_of: &place_of };
         let settings = Settings { seed, samples, ..Settings::default() };
         trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
             .expect("nobody cancels")

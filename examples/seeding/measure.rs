@@ -33,7 +33,7 @@ const PREPARATIONS: usize = 3;
 
 /// Runs below which deviations say less than a run's own standard error, and the most that are made.
 const FEWEST_RUNS: usize = 8;
-const MOST_RUNS: usize = 24;
+const MOST_RUNS: usize = 16;
 
 /// A sample above this share of all makes an error worthless.
 const LARGEST_TRUSTED_SHARE: f64 = 0.05;

@@ -6,16 +6,19 @@
 //!
 //! Limits: a local optimum from a start that is always the same, the samples farthest from those before.
 
-use crate::light::{Lobe, MOST_LOBES};
+use crate::light::{Incident, Lobe, MOST_LOBES};
 use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
 
 /// Light that comes from a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Where it comes from, unit length.
     pub direction: Vec3,
-    /// How much it is.
+    /// How much it is: what it adds to the irradiance.
     pub weight: f32,
+    /// How much comes per steradian (radiance, times the cosine on a surface), in any unit: what its density should follow.
+    pub density: f32,
     /// How far away what shines stands, metres.
     pub distance_m: f32,
 }
@@ -32,6 +35,9 @@ const PRIOR_COSINE: f64 = 0.5;
 
 /// No lobe is narrower: half of the light within 2 degrees.
 const MOST_CONCENTRATION: f64 = 1000.0;
+
+/// Shares that are tried: never all, for lobes leave out what they do not know.
+const TRUSTS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
 
 /// A lobe with less than this share is given up.
 const LEAST_SHARE: f64 = 0.01;
@@ -53,6 +59,26 @@ pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
     mixture.iter_mut().for_each(|lobe| lobe.weight /= kept);
     mixture.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     mixture
+}
+
+/// The share of directions that is best drawn from the lobes and not from the cosine about the normal (or evenly): that with the
+/// least second moment of `density / drawn density`, by the samples that the lobes were fitted to.
+pub fn trust(samples: &[Sample], incident: &Incident) -> f32 {
+    if incident.lobes.is_empty() {
+        return 0.0;
+    }
+    let mut moments = [0.0; TRUSTS.len()];
+    for sample in samples {
+        let by_lobes = incident.density_per_sr(sample.direction);
+        let plainly =
+            incident.normal.map_or(1.0 / (4.0 * PI), |normal| f64::from(normal.dot(sample.direction).max(0.0)) / PI);
+        let amount = f64::from(sample.weight) * f64::from(sample.density);
+        for (moment, trust) in moments.iter_mut().zip(TRUSTS) {
+            *moment += amount / (trust * by_lobes + (1.0 - trust) * plainly).max(f64::MIN_POSITIVE);
+        }
+    }
+    let best = (0..TRUSTS.len()).min_by(|&a, &b| moments[a].total_cmp(&moments[b]));
+    best.map_or(0.0, |best| TRUSTS[best] as f32)
 }
 
 /// Lobes about the sample with most weight and those that are heaviest away from the ones before.
@@ -136,7 +162,7 @@ mod tests {
             .map(|index| {
                 let lobe = known[usize::from(index % 10 >= 6)];
                 let square = [(f64::from(index) * 0.754_878).fract(), (f64::from(index) * 0.569_840).fract()];
-                Sample { direction: lobe.drawn(square), weight: 2.0, distance_m: lobe.distance_m }
+                Sample { direction: lobe.drawn(square), weight: 2.0, density: 1.0, distance_m: lobe.distance_m }
             })
             .collect();
         let found = lobes(&samples);
@@ -156,7 +182,7 @@ mod tests {
     #[test]
     fn without_light_there_is_no_lobe_and_one_sample_is_one() {
         assert_eq!(lobes(&[]), []);
-        let sample = Sample { direction: Vec3::X, weight: 0.0, distance_m: 1.0 };
+        let sample = Sample { direction: Vec3::X, weight: 0.0, density: 1.0, distance_m: 1.0 };
         assert_eq!(lobes(&[sample]), []);
         let found = lobes(&[Sample { weight: 3.0, ..sample }]);
         assert_eq!(found.len(), 1);

@@ -38,6 +38,8 @@ struct Sight {
     from_m: Vec3,
     /// Where what shines is, metres.
     to_m: Vec3,
+    /// What it sends out there, W/m2.
+    sends_w_m2: f64,
     weight: f64,
 }
 
@@ -53,9 +55,10 @@ pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Inciden
         let ways = [(first, last, line.from_m, end_m), (last, first, end_m, line.from_m)];
         for (here, there, from_m, to_m) in ways {
             let (End::Patch(patch), End::Patch(other)) = (here, there) else { continue };
-            let weight = line.weight_m2 * shine.at_w_m2(other, to_m);
-            if weight > 0.0 {
-                sights[patch as usize].push(Sight { from_m, to_m, weight });
+            let sends_w_m2 = shine.at_w_m2(other, to_m);
+            if sends_w_m2 > 0.0 {
+                let weight = line.weight_m2 * sends_w_m2;
+                sights[patch as usize].push(Sight { from_m, to_m, sends_w_m2, weight });
             }
         }
     }
@@ -80,15 +83,18 @@ pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Inciden
                 turn(&sights[beside], position_m, Some(normal), BESIDE_COUNTS / other.area_m2, &mut samples);
             }
         }
-        Incident {
-            position_m,
-            normal: Some(normal),
-            lobes: fit::lobes(&samples),
-            reflected_w_m2: network.reflected_w_m2.iter().map(|column| column[number]).sum::<f64>() as f32,
-            direct_w_m2: (network.landings.iter())
-                .map(|landing| (landing.flux_w[number] / patch.area_m2) as f32)
-                .collect(),
-        }
+        described(
+            &samples,
+            Incident {
+                position_m,
+                normal: Some(normal),
+                reflected_w_m2: network.reflected_w_m2.iter().map(|column| column[number]).sum::<f64>() as f32,
+                direct_w_m2: (network.landings.iter())
+                    .map(|landing| (landing.flux_w[number] / patch.area_m2) as f32)
+                    .collect(),
+                ..Incident::default()
+            },
+        )
     };
     sights.par_iter().enumerate().map(incident).collect()
 }
@@ -113,16 +119,12 @@ pub fn at_point(
         reflected_w_m2 += weight;
         if weight > 0.0 {
             let distance_m = sight.at.position_m.distance(from_m);
-            samples.push(Sample { direction: sight.direction, weight: weight as f32, distance_m });
+            let density = (cosine * sends_w_m2) as f32;
+            samples.push(Sample { direction: sight.direction, weight: weight as f32, density, distance_m });
         }
     }
-    Incident {
-        position_m: from_m,
-        normal,
-        lobes: fit::lobes(&samples),
-        reflected_w_m2: reflected_w_m2 as f32,
-        direct_w_m2: Vec::new(),
-    }
+    let reflected_w_m2 = reflected_w_m2 as f32;
+    described(&samples, Incident { position_m: from_m, normal, reflected_w_m2, ..Incident::default() })
 }
 
 /// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
@@ -147,9 +149,9 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
         crossed.moment += weight_m3 * at_m.as_dvec3();
         let end_m = line.from_m + line.length_m * line.direction;
         for (end, to_m) in [(line.ends[0], line.from_m), (line.ends[1], end_m)] {
-            let weight = if let End::Patch(patch) = end { weight_m3 * shine.at_w_m2(patch, to_m) } else { 0.0 };
-            if weight > 0.0 {
-                crossed.sights.push(Sight { from_m: at_m, to_m, weight });
+            let sends_w_m2 = if let End::Patch(patch) = end { shine.at_w_m2(patch, to_m) } else { 0.0 };
+            if sends_w_m2 > 0.0 {
+                crossed.sights.push(Sight { from_m: at_m, to_m, sends_w_m2, weight: weight_m3 * sends_w_m2 });
             }
         }
     }
@@ -164,15 +166,18 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
         let is_seen = crossed.track_m3 > 0.0;
         let mut samples = Vec::new();
         turn(&crossed.sights, position_m, None, 1.0, &mut samples);
-        Incident {
-            position_m,
-            normal: None,
-            lobes: fit::lobes(&samples),
-            reflected_w_m2: (2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3) as f32,
-            direct_w_m2: (0..model.sources.emitters.len())
-                .map(|emitter| if is_seen { straight(emitter) } else { 0.0 })
-                .collect(),
-        }
+        described(
+            &samples,
+            Incident {
+                position_m,
+                normal: None,
+                reflected_w_m2: (2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3) as f32,
+                direct_w_m2: (0..model.sources.emitters.len())
+                    .map(|emitter| if is_seen { straight(emitter) } else { 0.0 })
+                    .collect(),
+                ..Incident::default()
+            },
+        )
     };
     crossed.par_iter().enumerate().map(incident).collect()
 }
@@ -198,6 +203,13 @@ struct Crossed {
     sights: Vec<Sight>,
 }
 
+/// A place with the lobes that samples give it.
+fn described(samples: &[Sample], place: Incident) -> Incident {
+    let mut place = Incident { lobes: fit::lobes(samples), ..place };
+    place.trust = fit::trust(samples, &place);
+    place
+}
+
 /// What was seen from around a place, as the place sees it.
 fn turn(sights: &[Sight], place_m: Vec3, normal: Option<Vec3>, factor: f64, samples: &mut Vec<Sample>) {
     samples.extend(sights.iter().filter_map(|sight| {
@@ -205,7 +217,8 @@ fn turn(sights: &[Sight], place_m: Vec3, normal: Option<Vec3>, factor: f64, samp
         let distance_m = to_m.length();
         // What is much nearer to the place than to where it was seen from would fill its view, and is left to the cosine.
         let direction = (distance_m > NEAREST_SHARE * sight.to_m.distance(sight.from_m)).then(|| to_m / distance_m)?;
-        let is_seen = normal.is_none_or(|normal| normal.dot(direction) > 0.0);
-        is_seen.then_some(Sample { direction, weight: (factor * sight.weight) as f32, distance_m })
+        let cosine = normal.map_or(1.0, |normal| normal.dot(direction));
+        let density = sight.sends_w_m2 as f32 * cosine;
+        (cosine > 0.0).then_some(Sample { direction, weight: (factor * sight.weight) as f32, density, distance_m })
     }));
 }

@@ -87,6 +87,8 @@ pub struct Incident {
     /// Reflected light, at most [`MOST_LOBES`], the heaviest first; by irradiance (radiance times cosine) where there is a
     /// normal, by radiance where there is none. Empty where no reflected light comes.
     pub lobes: Vec<Lobe>,
+    /// Share of directions that are best drawn from the lobes rather than from the cosine (in the open: evenly); 0 without lobes.
+    pub trust: f32,
     /// What is reflected at least once before it arrives: irradiance on the surface, or scalar irradiance, W/m2.
     pub reflected_w_m2: f32,
     /// What arrives straight from each emitter of [`Sources`](super::Sources), W/m2, as above.
@@ -94,6 +96,17 @@ pub struct Incident {
 }
 
 impl Incident {
+    /// The density of directions drawn from the lobes, per steradian; on a surface, what points below it is mirrored up.
+    pub fn density_per_sr(&self, towards: Vec3) -> f64 {
+        let all_around = |towards: Vec3| -> f64 {
+            self.lobes.iter().map(|lobe| f64::from(lobe.weight) * lobe.density_per_sr(towards)).sum()
+        };
+        match self.normal {
+            Some(normal) => all_around(towards) + all_around(towards - 2.0 * normal.dot(towards) * normal),
+            None => all_around(towards),
+        }
+    }
+
     /// What comes to a point near the place: the same light, its lobes turned.
     pub fn seen_from(&self, point_m: Vec3) -> Self {
         let moved_m = point_m - self.position_m;
@@ -106,6 +119,8 @@ impl Incident {
 pub struct Guiding<'a> {
     /// The places.
     pub places: Vec<&'a Incident>,
+    /// Places that are the sensors' own, by the sensors' numbers; a sensor beyond them asks `place_of`.
+    pub at_sensors: Vec<u32>,
     /// The number of the place for a point (metres) on a surface of that normal, or in the open; `None` where none is known.
     pub place_of: &'a (dyn Fn(Vec3, Option<Vec3>) -> Option<u32> + Sync),
 }

@@ -15,6 +15,7 @@ pub(super) struct Mixture {
     /// Whether it stands in the open, and so knows light from all around.
     is_open: bool,
     lobes: Vec<Lobe>,
+    trust: f64,
     /// Light reflected at least once before it arrives, W/m2.
     pub(super) reflected_w_m2: f64,
     /// Straight from all emitters, W/m2.
@@ -26,6 +27,8 @@ pub(super) struct Mixture {
 /// Lobes as a point sees them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
+    /// Share of directions to draw from here.
+    pub(super) trust: f64,
     is_open: bool,
     lobes: [Lobe; MOST_LOBES],
     factors: [f64; MOST_LOBES],
@@ -43,6 +46,7 @@ impl Mixture {
         Self {
             position_m: incident.position_m,
             is_open: incident.normal.is_none(),
+            trust: f64::from(incident.trust),
             lobes: incident.lobes.iter().take(MOST_LOBES).copied().collect(),
             reflected_w_m2: f64::from(incident.reflected_w_m2),
             direct_w_m2,
@@ -54,6 +58,7 @@ impl Mixture {
     pub(super) fn seen_from(&self, point_m: Vec3) -> Seen {
         let none = Lobe { direction: Vec3::Z, concentration: 0.0, weight: 0.0, distance_m: 1.0 };
         let mut seen = Seen {
+            trust: self.trust,
             is_open: self.is_open,
             lobes: [none; MOST_LOBES],
             factors: [0.0; MOST_LOBES],

@@ -17,9 +17,9 @@ mod places;
 
 use super::path::Paths;
 use super::random::Random;
-use super::{BLOCK, Standing, Sums, Traced, warnings};
+use super::{BLOCK, Sums, Traced, traced};
 use crate::job::{Cancel, Cancelled, Progress};
-use crate::light::{Field, Sampler, Settings, Sources};
+use crate::light::{Sampler, Settings, Sources};
 use crate::rays::Rays;
 use crate::scene::Scene;
 use glam::Vec3;
@@ -92,11 +92,7 @@ pub fn trace_learning(
     }
     progress.end();
 
-    let standings: Vec<Standing> = scene.sensors.iter().map(|sensor| Standing::of(sensor, sources)).collect();
-    let readings = sums.iter().zip(&standings).map(|(sums, standing)| sums.reading(*standing)).collect();
-    let top_share: Vec<f64> = sums.iter().map(Sums::top_share).collect();
-    let warnings = warnings(scene, &standings, &top_share);
-    Ok(Traced { field: Field { readings, warnings, shares: None }, top_share })
+    Ok(traced(scene, sources, &sums))
 }
 
 /// Samples a sensor in each pass: twice as many each time; what would be left over joins the last.

@@ -45,7 +45,7 @@ pub(super) fn sample(
     let normal = sensor.normal;
     let position_m = sensor.position_m + normal.unwrap_or(Vec3::ZERO) * paths.rays.epsilon_m();
     let cosine_to = |direction: Vec3| normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
-    let mut sample = Sample::default();
+    let mut sample = Sample { rays: 1, ..Sample::default() };
     let mut add = |direction: Vec3, irradiance_w_m2: f64| {
         sample.value_w_m2 += cosine_to(direction) * irradiance_w_m2;
         sample.flux_w_m2 += irradiance_w_m2 * direction.as_dvec3();
@@ -75,8 +75,9 @@ pub(super) fn sample(
     }
     turns.clear();
     turns.push(Turn { place, square, worth_sr: cosine / density_per_sr, weight: 1.0, found_w_m2_sr: 0.0 });
-    let radiance_w_m2_sr = reflected(paths, places, position_m, direction, random, turns);
+    let (radiance_w_m2_sr, rays) = reflected(paths, places, position_m, direction, random, turns);
     add(direction, radiance_w_m2_sr / density_per_sr);
+    sample.rays += rays;
     sights.extend(turns.iter().map(|turn| {
         let radiance_w_m2_sr = (radiance_w_m2_sr - turn.found_w_m2_sr).max(0.0) / turn.weight;
         let light_w_m2 = (radiance_w_m2_sr * turn.worth_sr) as f32;
@@ -85,7 +86,7 @@ pub(super) fn sample(
     sample
 }
 
-/// One sample of the reflected radiance that comes to `position_m` from `direction`, W/m2/sr.
+/// One sample of the reflected radiance that comes to `position_m` from `direction`, W/m2/sr, and the rays it took.
 fn reflected(
     paths: &Paths,
     places: &Places,
@@ -93,10 +94,11 @@ fn reflected(
     mut direction: Vec3,
     random: &mut Random,
     path: &mut Vec<Turn>,
-) -> f64 {
+) -> (f64, u32) {
     let (mut radiance_w_m2_sr, mut weight) = (0.0, 1.0);
-    let (mut bounces, mut turns) = (0, 0);
+    let (mut bounces, mut turns, mut rays) = (0, 0, 0);
     while bounces < paths.max_bounces {
+        rays += 2;
         let Some(hit) = paths.rays.closest(position_m, direction, f32::INFINITY) else { break };
         let Some((reflectance, transmittance)) = paths.shares(hit.surface) else { break };
         let facing = hit.facing();
@@ -143,7 +145,7 @@ fn reflected(
         let worth_sr = PI * plain_per_sr / next.density_per_sr;
         path.push(Turn { place, square: next.square, worth_sr, weight, found_w_m2_sr: radiance_w_m2_sr });
     }
-    radiance_w_m2_sr
+    (radiance_w_m2_sr, rays)
 }
 
 /// A direction from what is known of the place or from the plain draw, with the density of the mixture.
