@@ -103,17 +103,22 @@ fn first(samples: &[Sample], sum: f64) -> Vec<Lobe> {
     lobes
 }
 
-/// The share of each lobe in each sample.
+/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
+/// single precision, for this is most of what a guide costs.
 fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+    let mut heights = [f32::NEG_INFINITY; MOST_LOBES];
+    for (height, lobe) in heights.iter_mut().zip(lobes) {
+        *height = (f64::from(lobe.weight) * lobe.density_per_sr(lobe.direction)).ln() as f32;
+    }
     for (sample, shares) in samples.iter().zip(shares) {
-        *shares = [0.0; MOST_LOBES];
-        for (share, lobe) in shares.iter_mut().zip(lobes) {
-            *share = f64::from(lobe.weight) * lobe.density_per_sr(sample.direction);
+        let mut parts = heights;
+        for (part, lobe) in parts.iter_mut().zip(lobes) {
+            *part += lobe.concentration * (lobe.direction.dot(sample.direction) - 1.0);
         }
-        let sum: f64 = shares.iter().sum();
-        if sum > 0.0 {
-            shares.iter_mut().for_each(|share| *share /= sum);
-        }
+        let highest = parts.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let parts = parts.map(|part| if part > f32::NEG_INFINITY { (part - highest).exp() } else { 0.0 });
+        let sum: f32 = parts.iter().sum();
+        *shares = parts.map(|part| if sum > 0.0 { f64::from(part / sum) } else { 0.0 });
     }
 }
 

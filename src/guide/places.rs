@@ -3,17 +3,19 @@
 //! A line of weight `w` (area times solid angle times cosine, over the number of lines) between walls of radiosity B brings
 //! `w B` to either end, so the lines that end on a patch are samples of the light that arrives there; and a line that crosses
 //! a zone brings `w l B` to it over its length `l` there. Each sample is turned to where the place itself would see what
-//! shines. No ray is traced for this but those towards the lights from nodes.
+//! shines. No ray is traced for this, but for those towards the lights, and at sensors.
 
 use super::fit::{self, Sample};
 use super::shine::Shine;
+use super::straight::InView;
 use crate::flow::direct::direct;
-use crate::flow::network::gather::{self};
+use crate::flow::network::gather;
 use crate::flow::network::lines::Line;
 use crate::flow::network::walk::End;
 use crate::flow::network::{Gather, Network};
 use crate::flow::sequence;
 use crate::light::Incident;
+use crate::model::Probe;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -27,9 +29,16 @@ const BESIDE_COUNTS: f64 = 0.3;
 /// Patches look the same way from this cosine on.
 const ALIKE_FROM: f32 = 0.9;
 
+/// Rays of a point that has its own.
+const PROBE_RAYS: Gather = Gather { rays: 512, neck_rays: 128 };
+
+/// Shadow rays of such a point to an emitter that has a body.
+const PROBE_LIGHT_RAYS: u32 = 4;
+
 /// Offsets of the sequences that pick points on lines and of shadow rays start here.
 const POINT_OFFSETS: u64 = 1 << 46;
 const SHADOW_OFFSETS: u64 = 1 << 47;
+const PROBE_OFFSETS: u64 = 1 << 50;
 
 /// A line seen from a place: where it meets what shines, and how much that brings.
 #[derive(Debug, Clone, Copy)]
@@ -99,32 +108,36 @@ pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Inciden
     sights.par_iter().enumerate().map(incident).collect()
 }
 
-/// The light at a point of a cell, on a surface of that normal or in the open, by rays of its own: where one place is worth as
-/// much, a sensor or a pixel.
-pub fn at_point(
-    network: &Network,
-    shine: &Shine,
-    rays: &Gather,
-    from_m: Vec3,
-    normal: Option<Vec3>,
-    cell: u32,
-    offset: [f64; 2],
-) -> Incident {
+/// The light at a sensor, or wherever one point is worth rays of its own: over all it sees and to the necks of its room.
+/// `number` makes them its own. Without a way through the void to it nothing is known.
+pub fn at_probe(network: &Network, shine: &Shine, probe: &Probe, seed: u64, number: u64) -> Incident {
+    let model = network.grounds.model;
+    let Probe { position_m, normal, place: Ok(node) } = *probe else { return Incident::default() };
+    let cell = model.skeleton.graph.node_weight(node).map_or(u32::MAX, |node| node.cell);
+    let from_m = position_m + normal.unwrap_or(Vec3::ZERO) * model.rays.epsilon_m();
+    let offset = sequence::offset(seed, PROBE_OFFSETS + number);
     let mut samples = Vec::new();
     let mut reflected_w_m2 = 0.0;
-    for sight in gather::sights(network, rays, from_m, normal, cell, offset) {
+    for sight in gather::sights(network, &PROBE_RAYS, from_m, normal, cell, offset) {
         let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(sight.direction).max(0.0)));
-        let sends_w_m2 = shine.at_w_m2(sight.patch, sight.at.position_m);
-        let weight = sight.weight * cosine * sends_w_m2;
+        let density = cosine * shine.at_w_m2(sight.patch, sight.at.position_m);
+        let weight = sight.weight * density;
         reflected_w_m2 += weight;
         if weight > 0.0 {
             let distance_m = sight.at.position_m.distance(from_m);
-            let density = (cosine * sends_w_m2) as f32;
-            samples.push(Sample { direction: sight.direction, weight: weight as f32, density, distance_m });
+            let (weight, density) = (weight as f32, density as f32);
+            samples.push(Sample { direction: sight.direction, weight, density, distance_m });
         }
     }
-    let reflected_w_m2 = reflected_w_m2 as f32;
-    described(&samples, Incident { position_m: from_m, normal, reflected_w_m2, ..Incident::default() })
+    let straight = |emitter| direct(model, from_m, normal, emitter, PROBE_LIGHT_RAYS, offset).value_w_m2 as f32;
+    let place = Incident {
+        position_m: from_m,
+        normal,
+        reflected_w_m2: reflected_w_m2 as f32,
+        direct_w_m2: (0..model.sources.emitters.len()).map(straight).collect(),
+        ..Incident::default()
+    };
+    described(&samples, place)
 }
 
 /// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
@@ -132,6 +145,7 @@ pub fn at_point(
 pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> Vec<Incident> {
     let grounds = &network.grounds;
     let (model, zones) = (grounds.model, &grounds.zones);
+    let in_view = InView::new(network, seed);
     // One place a line, anywhere on it, stands for its whole length.
     let place = |(number, line): (usize, &Line)| {
         let along_m = sequence::offset(seed, POINT_OFFSETS + number as u64)[0] as f32 * line.length_m;
@@ -159,25 +173,16 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
     let incident = |(zone, crossed): (usize, &Crossed)| {
         let track_m3 = crossed.track_m3.max(f64::MIN_POSITIVE);
         let position_m = (crossed.moment / track_m3).as_vec3();
-        let straight = |emitter: usize| {
-            let offset = sequence::offset(seed, SHADOW_OFFSETS + zone as u64);
-            direct(model, position_m, None, emitter, 1, offset).value_w_m2 as f32
-        };
-        let is_seen = crossed.track_m3 > 0.0;
+        let mut direct_w_m2 = vec![0.0; model.sources.emitters.len()];
+        if crossed.track_m3 > 0.0 {
+            let straight = in_view.at(network, zone as u32, position_m, SHADOW_OFFSETS + zone as u64);
+            straight.iter().for_each(|(emitter, straight)| direct_w_m2[*emitter] = straight.value_w_m2 as f32);
+        }
         let mut samples = Vec::new();
         turn(&crossed.sights, position_m, None, 1.0, &mut samples);
-        described(
-            &samples,
-            Incident {
-                position_m,
-                normal: None,
-                reflected_w_m2: (2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3) as f32,
-                direct_w_m2: (0..model.sources.emitters.len())
-                    .map(|emitter| if is_seen { straight(emitter) } else { 0.0 })
-                    .collect(),
-                ..Incident::default()
-            },
-        )
+        let reflected_w_m2 = 2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3;
+        let reflected_w_m2 = reflected_w_m2 as f32;
+        described(&samples, Incident { position_m, reflected_w_m2, direct_w_m2, ..Incident::default() })
     };
     crossed.par_iter().enumerate().map(incident).collect()
 }

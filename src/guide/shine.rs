@@ -47,6 +47,11 @@ impl<'a> Shine<'a> {
         self.patches.get(patch as usize).map_or(0.0, of)
     }
 
+    /// The same for all patches, in their order.
+    pub fn means_w_m2(&self) -> Vec<f64> {
+        (0..self.patches.len() as u32).map(|patch| self.mean_w_m2(patch)).collect()
+    }
+
     /// What it sends out at that point of it, W/m2.
     pub fn at_w_m2(&self, patch: u32, point_m: Vec3) -> f64 {
         let Some(lit) = self.patches.get(patch as usize) else { return 0.0 };
