@@ -1,11 +1,10 @@
 //! Who competes: a name, what it makes before its first sample, and how it then answers.
 
 use glam::Vec3;
-use lightvein::flow::network::{Network, Quality};
-use lightvein::guide::places;
-use lightvein::guide::shine::Shine;
+use lightvein::flow::network::Quality;
+use lightvein::guide::guide;
 use lightvein::job::{Cancel, Quiet};
-use lightvein::light::{Guiding, Incident, Settings, Sources};
+use lightvein::light::{Guiding, Settings, Sources};
 use lightvein::model::Model;
 use lightvein::model::choose::choose_voxel_m;
 use lightvein::rays::Rays;
@@ -57,35 +56,24 @@ fn plain<'a>(stage: &'a Stage<'a>) -> Run<'a> {
     })
 }
 
-/// Voxels, skeleton, network and lobes; then paths that follow the lobes.
+/// Voxels, skeleton, guide, and the sensors' own places; then paths that follow it.
 fn guided<'a>(stage: &'a Stage<'a>) -> Result<Run<'a>, Box<dyn Error>> {
     let (quiet, cancel) = (&Quiet, &Cancel::new());
     let model = match stage.scene.model.voxel_m {
         Some(voxel_m) => Model::build(stage.scene, stage.rays.clone(), voxel_m, u64::MAX, quiet, cancel)?,
         None => choose_voxel_m(stage.scene, &stage.rays, u64::MAX, quiet, cancel)?.model,
     };
-    // The network borrows the model and both serve the runs: they live as long as the program.
+    // The guide borrows the model and both serve the runs: it lives as long as the program.
     let model: &Model = Box::leak(Box::new(model));
-    let quality = Quality { spacing: 0.4, lines: 20, all_lines: 42_000, neck_lines: 1024, ..Quality::MEDIUM };
-    let (mut network, lines) = Network::new(model, &quality, &Settings::default(), quiet, cancel)?;
-    let grounds = &mut network.grounds;
-    grounds.patches.fill_gaps(&grounds.zones);
-    let shine = Shine::new(&network);
-    let walls = places::at_walls(&network, &shine, &lines);
-    let open = places::in_zones(&network, &shine, &lines, 0);
-    drop(shine);
+    let seeded = guide(model, &Quality::MEDIUM, &Settings::default(), quiet, cancel)?;
+    let own = seeded.at_probes(&model.probes_at_sensors(stage.scene), 0, cancel)?;
     Ok(Box::new(move |seed, samples| {
-        let (patches, zones, first_open) = (&network.grounds.patches, &network.grounds.zones, walls.len() as u32);
-        let in_open = |at_m: Vec3| {
-            let node = model.skeleton.nearest.node(model.voxels.lattice.voxel_at(at_m))?;
-            Some(zones.at(node, at_m) + first_open)
-        };
-        let place_of = |at_m: Vec3, normal: Option<Vec3>| {
-            let on_wall = normal.and_then(|normal| patches.near(model, zones, at_m, normal));
-            on_wall.or_else(|| in_open(at_m))
-        };
-        let places: Vec<&Incident> = walls.iter().chain(&open).collect();
-        let guiding = Guiding { places, at_sensors: Vec::new(), place_of: &place_of };
+        let mut places = seeded.places();
+        let first_own = places.len() as u32;
+        places.extend(&own);
+        let at_sensors = (first_own..places.len() as u32).collect();
+        let place_of = |at_m: Vec3, normal: Option<Vec3>| seeded.place_of(at_m, normal);
+        let guiding = Guiding { places, at_sensors, place_of: &place_of };
         let settings = Settings { seed, samples, ..Settings::default() };
         trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
             .expect("nobody cancels")
