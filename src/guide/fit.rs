@@ -23,6 +23,9 @@ pub struct Sample {
     pub distance_m: f32,
 }
 
+/// Samples that are enough for a place: more would sharpen what four round lobes blur.
+const ENOUGH_SAMPLES: usize = 160;
+
 /// Steps of expectation and maximisation; later ones move lobes by less than their width.
 const STEPS: usize = 6;
 
@@ -44,6 +47,26 @@ const LEAST_LOGARITHM: f32 = -14.0;
 
 /// A lobe with less than this share is given up.
 const LEAST_SHARE: f64 = 0.01;
+
+/// At most so many samples as are enough for a few lobes, all of the same weight and in the same sum, drawn evenly along the sum
+/// of weights; as they are where they are few.
+pub fn thinned(samples: Vec<Sample>) -> Vec<Sample> {
+    if samples.len() <= ENOUGH_SAMPLES {
+        return samples;
+    }
+    let sum: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
+    let share = sum / ENOUGH_SAMPLES as f64;
+    let (mut up_to, mut next) = (0.0, 0.5 * share);
+    let mut kept = Vec::with_capacity(ENOUGH_SAMPLES);
+    for sample in &samples {
+        up_to += f64::from(sample.weight);
+        while next < up_to && kept.len() < ENOUGH_SAMPLES {
+            kept.push(Sample { weight: share as f32, ..*sample });
+            next += share;
+        }
+    }
+    kept
+}
 
 /// At most [`MOST_LOBES`] lobes for some samples, the heaviest first; none where no sample has weight. Linear in the samples.
 pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
