@@ -50,6 +50,22 @@ pub fn print(found: &Finding) {
             );
         }
     }
+    let chosen: Vec<String> = (0..found.budgets_s.len())
+        .filter_map(|budget| {
+            let outcome = chosen(found, budget)?;
+            let ratio = median(&ratios(found, outcome, budget));
+            Some(format!("{} s {} {ratio:.2}", found.budgets_s[budget], outcome.name))
+        })
+        .collect();
+    if !chosen.is_empty() {
+        println!("  by the finer guide that takes no more than a tenth of the budget: {}", chosen.join(", "));
+    }
+}
+
+/// The guide for a budget: the finer one if making it takes no more than a tenth of the budget, else the coarser.
+fn chosen(found: &Finding, budget: usize) -> Option<&Outcome> {
+    let named = |name: &str| found.outcomes.iter().find(|outcome| outcome.name == name);
+    named("guided").filter(|fine| fine.prepare_s <= 0.1 * found.budgets_s[budget]).or_else(|| named("coarse"))
 }
 
 fn plain(found: &Finding) -> Option<&Outcome> {
