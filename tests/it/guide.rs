@@ -82,7 +82,10 @@ fn places_belong_to_patches_and_their_parts_add_up() {
         }
         for at in guide.probes.iter().map(|probe| probe.position_m) {
             let place = seeded.known.place_of(at, None).expect("probes stand in the void") as usize;
-            assert!(place >= guide.walls.len() && place < seeded.known.walls.len(), "{name}");
+            assert!(
+                place >= guide.walls.len() && place < seeded.known.walls.len() + seeded.known.zones.len(),
+                "{name}"
+            );
         }
     }
 }
