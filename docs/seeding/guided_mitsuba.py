@@ -77,7 +77,7 @@ def load(scene_path, oracle_path):
 
 
 class Guide:
-    """The guide's places on the device: walls first, then nodes. Place -1 is none."""
+    """The guide's places on the device: walls first, then nodes, then one of nothing. Place -1 is none."""
 
     def __init__(self, scene, setup, folder, seed):
         guide = read_guide.read(folder)
@@ -87,18 +87,18 @@ class Guide:
         self.wall_count, self.places = len(walls["x"]), len(walls["x"]) + len(nodes["x"])
         self.position = np.concatenate([np.stack([t[c] for c in "xyz"], 1) for t in (walls, nodes)])
         self.normal = np.stack([walls[c] for c in ("nx", "ny", "nz")], 1)
-        lobes = np.concatenate([guide["walls_lobes"], guide["nodes_lobes"]]).astype(np.float64)
+        lobes = np.concatenate([guide["walls_lobes"], guide["nodes_lobes"], np.zeros((1, 4, 6))])
         direct = np.concatenate([guide["walls_lights"], guide["nodes_lights"]])[..., 0]
 
         # What a lobe points at, so that a neighbour of the place can aim at the same.
         distance = np.where(lobes[..., 5] > 0, lobes[..., 5], 1e3)
-        target = self.position[:, None] + distance[..., None] * lobes[..., :3]
+        target = np.append(self.position, [[0, 0, 0]], 0)[:, None] + distance[..., None] * lobes[..., :3]
         self.aims = flat(np.concatenate([target, lobes[..., 3:4]], 2))
         self.weights = flat(np.stack([lobes[..., 4], distance], 2))
         self.lit = mi.Bool(lobes[..., 4].sum(1) > 0)
         self.light_sums = flat(np.cumsum(light_chances(scene, setup, guide["emitters"], direct), 1))
 
-        self.arriving = flat(np.concatenate([walls["irradiance"], nodes["scalar"]]))
+        self.arriving = flat(np.concatenate([walls["irradiance"], nodes["scalar"], [0]]))
         self.walls_tree = cKDTree(np.concatenate([self.position[:self.wall_count], self.normal], 1))
         self.nodes_tree = cKDTree(self.position[self.wall_count:])
         self.cell_m = CELL_VOXELS * guide["voxel_m"]
@@ -109,19 +109,20 @@ class Guide:
         box = scene.bbox()
         self.low = np.array(box.min).ravel() - self.cell_m
         self.shape = np.ceil((np.array(box.max).ravel() + self.cell_m - self.low) / self.cell_m).astype(int)
-        each = max(1, LANES // max(1, self.wall_count))
-        start = np.repeat(np.arange(self.wall_count), each)
-        normal = vector(self.normal[start])
-        sampler = mi.load_dict({"type": "independent"})
-        sampler.seed(seed, len(start))
-        towards = mi.Frame3f(normal).to_world(mi.warp.square_to_cosine_hemisphere(sampler.next_2d()))
-        hit = scene.ray_intersect(mi.Ray3f(mi.Point3f(vector(self.position[start]) + LIFT_M * normal), towards))
-        facing = mi.Normal3f(dr.select(dr.dot(hit.n, towards) > 0, -hit.n, hit.n))
-        slot = np.array(self._slot(hit.p, facing))[np.array(hit.is_valid())]
-        point, normal = (np.array(a).T[np.array(hit.is_valid())] for a in (hit.p, facing))
-        slot, first = np.unique(slot, return_index=True)
         table = np.full(6 * np.prod(self.shape), -1, dtype=np.int32)
-        table[slot] = self.of_walls(scene, point[first], normal[first])
+        if self.wall_count:
+            # What paths from the guide's own places hit stands for its slot.
+            start = np.repeat(np.arange(self.wall_count), max(1, LANES // self.wall_count))
+            normal = vector(self.normal[start])
+            sampler = mi.load_dict({"type": "independent"})
+            sampler.seed(seed, len(start))
+            towards = mi.Frame3f(normal).to_world(mi.warp.square_to_cosine_hemisphere(sampler.next_2d()))
+            hit = scene.ray_intersect(mi.Ray3f(mi.Point3f(vector(self.position[start]) + LIFT_M * normal), towards))
+            facing = mi.Normal3f(dr.select(dr.dot(hit.n, towards) > 0, -hit.n, hit.n))
+            found = np.array(hit.is_valid())
+            point, normal = (np.array(a).T[found] for a in (hit.p, facing))
+            slot, first = np.unique(np.array(self._slot(hit.p, facing))[found], return_index=True)
+            table[slot] = self.of_walls(scene, point[first], normal[first])
         self.table = mi.Int32(table)
 
     def _slot(self, p, n):
@@ -338,7 +339,7 @@ def measure(scene, guide, sensors, places, samples, seed):
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     points = np.array([position for _, position, _ in sensors]) + LIFT_M * np.where(free[:, None], 0, normals)
     sums = np.zeros((3, len(sensors)))
-    done, began = 0, time.perf_counter()
+    done, began = 0, time.process_time()
     while done < samples:
         chunk = min(samples - done, max(1, LANES // len(sensors)))
         lane = np.repeat(np.arange(len(sensors)), chunk)
@@ -354,7 +355,7 @@ def measure(scene, guide, sensors, places, samples, seed):
     variance = np.maximum(sums[1] / samples - mean * mean, 0) * samples / (samples - 1)
     top_share = sums[2] / np.maximum(sums[0], 1e-300)
     return {"mean": mean, "stderr": np.sqrt(variance / samples), "variance": variance, "top_share": top_share,
-            "seconds": time.perf_counter() - began}
+            "seconds": time.process_time() - began}
 
 
 def places_of(scene, guide, sensors):
@@ -397,7 +398,10 @@ def main():
     if not setup["lights"]:
         sys.exit(f"{options.scene}: has no lights")
     sensors = file.sensors()
-    guide = Guide(scene, setup, options.guide, options.seed)
+    try:
+        guide = Guide(scene, setup, options.guide, options.seed)
+    except (OSError, ValueError, KeyError) as error:
+        sys.exit(f"{options.guide}: not a whole guide: {type(error).__name__}: {error}")
     places = places_of(scene, guide, sensors)
     lights_alone = copy.copy(guide)
     lights_alone.directions = False
@@ -424,7 +428,7 @@ def report(options, sensors, reference, plain, lights, guided):
     print(f"W/m2, {options.spp} samples a sensor; apart: from plain and from the reference, in standard errors;\n"
           "ratio: variance of plain / guided at equal samples; lights: the same with lights alone guided;\n"
           f"*: one sample is over {TRUSTED_SHARE:.0%} of its sum, the variance is not known")
-    print(f"seconds: plain {plain['seconds']:.2f}, guided {guided['seconds']:.2f}")
+    print(f"processor seconds: plain {plain['seconds']:.2f}, guided {guided['seconds']:.2f}")
     for name, ratio in (("lights alone", ratios[0]), ("equal samples", ratios[1]), ("equal time", in_time)):
         print(f"{name:14} median {np.median(ratio):7.2f}  least {ratio.min():7.2f}  most {ratio.max():7.2f}")
     print(f"apart in standard errors, most: {np.abs(apart).max():.1f} from plain, {np.nanmax(np.abs(from_true)):.1f} from the reference")

@@ -29,10 +29,10 @@ def radiance(scene, guide, camera, samples, seed):
         across = (mi.Float(pixel % width) + jitter.x) / width * 2 - 1
         down = (mi.Float(pixel // width) + jitter.y) / height * 2 - 1
         side = np.tan(np.radians(camera["view_deg"]) / 2)
-        frame = mi.ScalarFrame3f(dr.normalize(mi.ScalarVector3f(camera["to"]) - mi.ScalarVector3f(camera["from"])))
-        right = dr.normalize(dr.cross(frame.n, mi.ScalarVector3f(0, 0, 1)))
-        up = dr.cross(right, frame.n)
-        towards = dr.normalize(mi.Vector3f(frame.n) + across * side * right - down * (side * height / width) * up)
+        ahead = dr.normalize(mi.ScalarVector3f(camera["to"]) - mi.ScalarVector3f(camera["from"]))
+        right = dr.normalize(dr.cross(ahead, mi.ScalarVector3f(0, 0, 1)))
+        up = dr.cross(right, ahead)
+        towards = dr.normalize(mi.Vector3f(ahead) + across * side * right - down * (side * height / width) * up)
 
         hit = scene.ray_intersect(mi.Ray3f(mi.Point3f(camera["from"]), towards))
         n = dr.select(dr.dot(hit.n, towards) > 0, -mi.Vector3f(hit.n), mi.Vector3f(hit.n))
