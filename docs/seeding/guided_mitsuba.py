@@ -279,12 +279,18 @@ def onwards(guide, sampler, p, n, free, place, active):
     sine, cosine = dr.sincos(dr.two_pi * square.y)
     radius = dr.sqrt(short * (2 - short))
     about = mi.Frame3f(axis).to_world(mi.Vector3f(radius * cosine, radius * sine, 1 - short))
-    towards = dr.select(by_lobes & (number >= share), dr.normalize(about), towards)
+    about = dr.normalize(about)
+    # What points into the wall is mirrored out of it, so that none is lost.
+    below = dr.select(free, 0, dr.dot(n, about))
+    about = dr.select(below < 0, about - 2 * below * n, about)
+    towards = dr.select(by_lobes & (number >= share), about, towards)
+    mirrored = towards - 2 * dr.dot(n, towards) * n
 
     density = mi.Float(0)
     for axis, concentration, weight in lobes:
-        peak = concentration * dr.inv_two_pi / (1 - dr.exp(-2 * concentration))
-        density += weight * peak * dr.exp(-0.5 * concentration * dr.squared_norm(towards - axis))
+        peak = weight * concentration * dr.inv_two_pi / (1 - dr.exp(-2 * concentration))
+        density += peak * dr.exp(-0.5 * concentration * dr.squared_norm(towards - axis))
+        density += dr.select(free, 0, peak * dr.exp(-0.5 * concentration * dr.squared_norm(mirrored - axis)))
     return towards, dr.select(by_lobes, share * even(towards) + (1 - share) * density, even(towards))
 
 
