@@ -33,7 +33,8 @@ import read_guide
 
 # How far points are lifted off surfaces, metres: 10 times what single precision resolves 80 m from the origin.
 LIFT_M = 1e-4
-# The part of directions drawn without the lobes, and of lights chosen evenly: where the guide is wrong, this bounds the noise.
+# The part of directions drawn without the lobes, and of lights chosen as if nothing cast shadows: where the guide is wrong,
+# this bounds the noise.
 DEFENSIVE = {"directions": 0.5, "lights": 0.25}
 # Reflections before roulette. From then on a plain path survives with the reflectance, so that its weight stays. A guided one
 # does when the rest of it is expected to bring at least a third of what the sensor gets (a weight window of 1 to 5, Vorba &
@@ -96,7 +97,7 @@ class Guide:
         self.aims = flat(np.concatenate([target, lobes[..., 3:4]], 2))
         self.weights = flat(np.stack([lobes[..., 4], distance], 2))
         self.lit = mi.Bool(lobes[..., 4].sum(1) > 0)
-        self.light_sums = flat(np.cumsum(light_chances(scene, setup, guide["emitters"], direct), 1))
+        self.light_sums = flat(np.cumsum(light_chances(scene, setup, guide, self.position, direct), 1))
 
         self.arriving = flat(np.concatenate([walls["irradiance"], nodes["scalar"], [0]]))
         self.walls_tree = cKDTree(np.concatenate([self.position[:self.wall_count], self.normal], 1))
@@ -190,23 +191,25 @@ def visible(scene, a, b):
     return ~np.array(scene.ray_test(ray)).reshape(shape[:-1])
 
 
-def light_chances(scene, setup, emitters, direct):
+def light_chances(scene, setup, guide, position, direct):
     """[place, Mitsuba light]: how often each is to be asked. The last row is for no place: evenly."""
     lights = setup["lights"]
-    centre = np.array([centre_of(light) for light in lights]).reshape(-1, 3)
-    known = np.array([emitter["position"] for emitter in emitters]).reshape(-1, 3)
-    chances = np.zeros((len(direct) + 1, len(lights)))
-    if len(known):
-        # Joined emissive faces are one emitter of the guide and several quads here: they share its column by flux.
-        owner = np.linalg.norm(centre[:, None] - known[None], axis=2).argmin(1)
-        flux = np.array([flux_of(light) for light in lights])
-        chances[:-1] = direct[:, owner] * (flux / np.bincount(owner, flux, len(known))[owner])
-    total = chances.sum(1, keepdims=True)
-    even = 1 / max(1, len(lights))
-    share = DEFENSIVE["lights"]
-    chances = np.where(total > 0, (1 - share) * chances / np.where(total > 0, total, 1) + share * even, even)
+    centre = np.array([centre_of(light) for light in lights])
+    flux = np.array([flux_of(light) for light in lights])
+    known = np.array([emitter["position"] for emitter in guide["emitters"]]).reshape(-1, 3)
+    # Joined emissive faces are one emitter of the guide and several quads here: they share its column by flux.
+    owner = np.linalg.norm(centre[:, None] - known[None], axis=2).argmin(1)
+    told = direct[:, owner] * (flux / np.bincount(owner, flux, len(known))[owner])
+    # What each would bring if nothing stood between; nearer than a voxel counts as a voxel away.
+    apart_m = np.linalg.norm(position[:, None] - centre, axis=2)
+    bare = flux / np.maximum(apart_m, guide["voxel_m"]) ** 2
+
+    bare, total = bare / bare.sum(1, keepdims=True), told.sum(1, keepdims=True)
+    share = np.where(total > 0, DEFENSIVE["lights"], 1)
+    chances = (1 - share) * told / np.where(total > 0, total, 1) + share * bare
+    chances = np.append(chances, np.full((1, len(lights)), 1 / len(lights)), 0)
     # Mitsuba numbers its emitters by itself.
-    names = [(e.get_shape() or e).id() for e in scene.emitters()]
+    names = [(emitter.get_shape() or emitter).id() for emitter in scene.emitters()]
     return chances[:, [int(name.removeprefix("light")) for name in names]]
 
 
