@@ -47,6 +47,10 @@ CONCENTRATION = (1e-2, 5e3)
 # The table that finds a place for a point: its cells in voxels, and how many neighbours are asked whether they see the point.
 CELL_VOXELS = 2.0
 NEIGHBOURS = 16
+# Chi-square distance that lobes have by chance: four of them are 15 numbers, fitted to about a hundred lines.
+CHANCE = 0.15
+# Draws that tell how far the lobes of a place are from the plain draw.
+DRAWS_FOR_SHARE = 64
 # Above this part of a sensor's sum in one sample, its variance is not known.
 TRUSTED_SHARE = 0.05
 # Paths at a time.
@@ -96,14 +100,33 @@ class Guide:
         target = np.append(self.position, [[0, 0, 0]], 0)[:, None] + distance[..., None] * lobes[..., :3]
         self.aims = flat(np.concatenate([target, lobes[..., 3:4]], 2))
         self.weights = flat(np.stack([lobes[..., 4], distance], 2))
-        self.lit = mi.Bool(lobes[..., 4].sum(1) > 0)
         self.light_sums = flat(np.cumsum(light_chances(scene, setup, guide, self.position, direct), 1))
 
         self.arriving = flat(np.concatenate([walls["irradiance"], nodes["scalar"], [0]]))
         self.walls_tree = cKDTree(np.concatenate([self.position[:self.wall_count], self.normal], 1))
         self.nodes_tree = cKDTree(self.position[self.wall_count:])
+        self.shares = self._shares(seed)
         self.cell_m = CELL_VOXELS * guide["voxel_m"]
         self._fill_table(scene, seed)
+
+    def _shares(self, seed):
+        """For each place the part of directions to draw by its lobes: none where they differ from the plain draw by chance alone.
+
+        Of lobes whose chi-square distance from the plain draw is d, of which chance makes e, the part 1 - e / d costs least.
+        """
+        place = np.repeat(np.arange(self.places), DRAWS_FOR_SHARE)
+        normal = np.concatenate([self.normal, np.tile([0, 0, 1.0], (self.places - self.wall_count, 1))])
+        n, p = vector(normal[place]), mi.Point3f(vector(self.position[place]))
+        free = mi.Bool(place >= self.wall_count)
+        sampler = mi.load_dict({"type": "independent"})
+        sampler.seed(seed, max(1, len(place)))
+        lobes = self.lobes_at(p, mi.UInt32(place), dr.full(mi.Bool, True, len(place)))
+        towards = by_lobes(lobes, n, free, sampler.next_1d(), sampler.next_2d())
+        # At grazing angles the quotient has no bound, and little light.
+        plain = dr.select(free, dr.inv_four_pi, dr.maximum(dr.dot(n, towards), 0.1) * dr.inv_pi)
+        quotient = np.array(density_by_lobes(lobes, n, free, towards) / plain).reshape(self.places, DRAWS_FOR_SHARE).mean(1)
+        known = 1 - CHANCE / np.maximum(quotient - 1, CHANCE)
+        return flat(np.append(np.minimum(known, 1 - DEFENSIVE["directions"]), 0))
 
     def _fill_table(self, scene, seed):
         """For each cell of a grid and each of six orientations the place of a surface that paths hit there."""
@@ -265,14 +288,17 @@ def onwards(guide, sampler, p, n, free, place, active):
 
     if guide is None or not guide.directions:
         return towards, even(towards)
-    by_lobes = active & (place >= 0) & dr.gather(mi.Bool, guide.lit, mi.UInt32(place), active & (place >= 0))
-    lobes = guide.lobes_at(p, place, by_lobes)
-
-    # One of the lobes by weight, and a direction about it (Jakob 2012).
+    share = dr.gather(mi.Float, guide.shares, mi.UInt32(place), active & (place >= 0))
+    lobes = guide.lobes_at(p, place, active & (place >= 0))
     number = sampler.next_1d(active)
-    share = mi.Float(DEFENSIVE["directions"])
-    left = (number - share) / (1 - share)
+    towards = dr.select(number < share, by_lobes(lobes, n, free, number / share, square), towards)
+    return towards, dr.select(share > 0, share * density_by_lobes(lobes, n, free, towards), 0) + (1 - share) * even(towards)
+
+
+def by_lobes(lobes, n, free, number, square):
+    """A direction by one of the lobes, chosen by weight with a number in [0, 1) (Jakob 2012)."""
     axis, concentration = lobes[0][:2]
+    left = mi.Float(number)
     for (_, _, weight), (next_axis, next_concentration, next_weight) in zip(lobes, lobes[1:]):
         left -= weight
         later = (left > 0) & (next_weight > 0)
@@ -281,20 +307,21 @@ def onwards(guide, sampler, p, n, free, place, active):
     short = dr.clip(-dr.log(1 - square.x * (1 - dr.exp(-2 * concentration))) / concentration, 0, 2)
     sine, cosine = dr.sincos(dr.two_pi * square.y)
     radius = dr.sqrt(short * (2 - short))
-    about = mi.Frame3f(axis).to_world(mi.Vector3f(radius * cosine, radius * sine, 1 - short))
-    about = dr.normalize(about)
+    about = dr.normalize(mi.Frame3f(axis).to_world(mi.Vector3f(radius * cosine, radius * sine, 1 - short)))
     # What points into the wall is mirrored out of it, so that none is lost.
-    below = dr.select(free, 0, dr.dot(n, about))
-    about = dr.select(below < 0, about - 2 * below * n, about)
-    towards = dr.select(by_lobes & (number >= share), about, towards)
-    mirrored = towards - 2 * dr.dot(n, towards) * n
+    below = dr.select(free, 0, dr.minimum(dr.dot(n, about), 0))
+    return about - 2 * below * n
 
+
+def density_by_lobes(lobes, n, free, towards):
+    """The density of by_lobes, per steradian."""
+    mirrored = towards - 2 * dr.dot(n, towards) * n
     density = mi.Float(0)
     for axis, concentration, weight in lobes:
         peak = weight * concentration * dr.inv_two_pi / (1 - dr.exp(-2 * concentration))
         density += peak * dr.exp(-0.5 * concentration * dr.squared_norm(towards - axis))
         density += dr.select(free, 0, peak * dr.exp(-0.5 * concentration * dr.squared_norm(mirrored - axis)))
-    return towards, dr.select(by_lobes, share * even(towards) + (1 - share) * density, even(towards))
+    return density
 
 
 @dr.syntax
