@@ -92,6 +92,7 @@ class Guide:
         self.wall_count, self.places = len(walls["x"]), len(walls["x"]) + len(nodes["x"])
         self.position = np.concatenate([np.stack([t[c] for c in "xyz"], 1) for t in (walls, nodes)])
         self.normal = np.stack([walls[c] for c in ("nx", "ny", "nz")], 1)
+        self.radius_m = nodes["radius"]
         lobes = np.concatenate([guide["walls_lobes"], guide["nodes_lobes"], np.zeros((1, 4, 6))])
         direct = np.concatenate([guide["walls_lights"], guide["nodes_lights"]])[..., 0]
 
@@ -103,6 +104,7 @@ class Guide:
         self.light_sums = flat(np.cumsum(light_chances(scene, setup, guide, self.position, direct), 1))
 
         self.arriving = flat(np.concatenate([walls["irradiance"], nodes["scalar"], [0]]))
+        self.reflected = flat(np.concatenate([walls["reflected"], nodes["reflected"], [0]]))
         self.walls_tree = cKDTree(np.concatenate([self.position[:self.wall_count], self.normal], 1))
         self.nodes_tree = cKDTree(self.position[self.wall_count:])
         self.shares = self._shares(seed)
@@ -174,13 +176,18 @@ class Guide:
         return np.where(like.any(1), near[np.arange(len(near)), best], -1)
 
     def of_open(self, scene, point):
-        """The nearest node that sees each point, -1 where none does."""
+        """The nearest node that sees each point (-1 where none does), and how far its lobes hold there.
+
+        Fully in the empty ball about the node; beyond, as radius over distance: what stands nearer looks other than from there.
+        """
         count = min(NEIGHBOURS, self.nodes_tree.n)
         if not count or not len(point):
-            return np.full(len(point), -1)
-        near = self.nodes_tree.query(point, count)[1].reshape(len(point), count) + self.wall_count
-        seen = visible(scene, point[:, None], self.position[near])
-        return np.where(seen.any(1), near[np.arange(len(near)), seen.argmax(1)], -1)
+            return np.full(len(point), -1), np.ones(len(point))
+        apart_m, near = (found.reshape(len(point), count) for found in self.nodes_tree.query(point, count))
+        seen = visible(scene, point[:, None], self.position[near + self.wall_count])
+        best = np.arange(len(near)), seen.argmax(1)
+        holds = np.minimum(1, self.radius_m[near[best]] / np.maximum(apart_m[best], 1e-6))
+        return np.where(seen.any(1), near[best] + self.wall_count, -1), holds
 
     def lobes_at(self, p, place, active):
         """The lobes of a place re-aimed from p: [(direction, concentration, weight)]."""
@@ -276,7 +283,7 @@ def direct(scene, guide, sampler, p, n, free, place, active):
     return dr.select(active & ~scene.ray_test(shadow, active), cosine * radiance[0] / chance, 0)
 
 
-def onwards(guide, sampler, p, n, free, place, active):
+def onwards(guide, sampler, p, n, free, place, holds, active):
     """Where a path goes on: a direction, and its density per steradian in the mixture it is drawn from."""
     frame = mi.Frame3f(n)
     square = sampler.next_2d(active)
@@ -288,7 +295,7 @@ def onwards(guide, sampler, p, n, free, place, active):
 
     if guide is None or not guide.directions:
         return towards, even(towards)
-    share = dr.gather(mi.Float, guide.shares, mi.UInt32(place), active & (place >= 0))
+    share = holds * dr.gather(mi.Float, guide.shares, mi.UInt32(place), active & (place >= 0))
     lobes = guide.lobes_at(p, place, active & (place >= 0))
     number = sampler.next_1d(active)
     towards = dr.select(number < share, by_lobes(lobes, n, free, number / share, square), towards)
@@ -325,22 +332,22 @@ def density_by_lobes(lobes, n, free, towards):
 
 
 @dr.syntax
-def estimate(scene, guide, sampler, p, n, free, place):
+def estimate(scene, guide, sampler, p, n, free, place, holds=1.0):
     """One sample a lane of the irradiance at p on a surface of normal n, of the scalar irradiance where free.
 
-    guide None is the plain path tracer; place (-1 for none) is the guide's at p. Points stand off surfaces by LIFT_M.
+    guide None is the plain path tracer; place (-1 for none) is the guide's at p and holds how far it does there, 0 to 1. Points stand off surfaces by LIFT_M.
     """
-    p, n, free, place = mi.Point3f(p), mi.Vector3f(n), mi.Bool(free), mi.Int32(place)
+    p, n, free, place, holds = mi.Point3f(p), mi.Vector3f(n), mi.Bool(free), mi.Int32(place), mi.Float(holds)
     value, weight, turns = mi.Float(0), mi.Float(1), mi.UInt32(0)
     hope = mi.Float(0)
     if guide is not None:
-        hope = dr.gather(mi.Float, guide.arriving, mi.UInt32(place), place >= 0)
+        hope = dr.gather(mi.Float, guide.reflected, mi.UInt32(place), place >= 0)
     active = dr.full(mi.Bool, True, dr.width(p))
     while active:
         value += weight * direct(scene, guide, sampler, p, n, free, place, active)
 
         # The next surface: lights are black, the rest reflects on both sides.
-        towards, density = onwards(guide, sampler, p, n, free, place, active)
+        towards, density = onwards(guide, sampler, p, n, free, place, holds, active)
         cosine = dr.select(free, 1, dr.dot(n, towards))
         active &= (cosine > 0) & (density > 0)
         hit = scene.ray_intersect(mi.Ray3f(p, towards), active)
@@ -352,7 +359,7 @@ def estimate(scene, guide, sampler, p, n, free, place):
 
         n = dr.select(dr.dot(hit.n, towards) > 0, -mi.Vector3f(hit.n), mi.Vector3f(hit.n))
         p = mi.Point3f(hit.p + LIFT_M * n)
-        free = mi.Bool(False)
+        free, holds = mi.Bool(False), mi.Float(1)
         if guide is not None:
             place = guide.at(hit.p, n, active)
 
@@ -368,7 +375,7 @@ def estimate(scene, guide, sampler, p, n, free, place):
     return value
 
 
-def measure(scene, guide, sensors, places, samples, seed):
+def measure(scene, guide, sensors, places, holds, samples, seed):
     """For each sensor the mean, its standard error, the variance of a sample and the largest sample's part of the sum."""
     free = np.array([normal is None for _, _, normal in sensors])
     normals = np.array([normal or (0, 0, 1) for _, _, normal in sensors], dtype=float)
@@ -382,7 +389,8 @@ def measure(scene, guide, sensors, places, samples, seed):
         sampler = mi.load_dict({"type": "independent"})
         sampler.seed(seed, len(lane))
         with dr.suspend_grad():
-            value = estimate(scene, guide, sampler, vector(points[lane]), vector(normals[lane]), free[lane], places[lane].astype(np.int32))
+            value = estimate(scene, guide, sampler, vector(points[lane]), vector(normals[lane]), free[lane],
+                             places[lane].astype(np.int32), flat(holds[lane]))
         value = np.array(value, dtype=np.float64).reshape(len(sensors), chunk)
         sums[:2] += value.sum(1), (value * value).sum(1)
         sums[2] = np.maximum(sums[2], value.max(1))
@@ -395,15 +403,15 @@ def measure(scene, guide, sensors, places, samples, seed):
 
 
 def places_of(scene, guide, sensors):
-    """The guide's place for each sensor: a wall's where one like it is near, else a node's."""
-    places = np.full(len(sensors), -1)
+    """The guide's place for each sensor, a wall's for one with a normal and a node's for one without, and how far it holds."""
+    places, holds = np.full(len(sensors), -1), np.ones(len(sensors))
     free = np.array([normal is None for _, _, normal in sensors])
     points = np.array([position for _, position, _ in sensors])
     if (~free).any():
         normals = np.array([normal for _, _, normal in sensors if normal], dtype=float)
         places[~free] = guide.of_walls(scene, points[~free], normals)
-    places[free] = guide.of_open(scene, points[free])
-    return places
+    places[free], holds[free] = guide.of_open(scene, points[free])
+    return places, holds
 
 
 def reference_of(file):
@@ -438,13 +446,13 @@ def main():
         guide = Guide(scene, setup, options.guide, options.seed)
     except (OSError, ValueError, KeyError) as error:
         sys.exit(f"{options.guide}: not a whole guide: {type(error).__name__}: {error}")
-    places = places_of(scene, guide, sensors)
+    places, holds = places_of(scene, guide, sensors)
     lights_alone = copy.copy(guide)
     lights_alone.directions = False
     runs = []
     for number, contestant in enumerate((None, lights_alone, guide)):
-        measure(scene, contestant, sensors, places, 2, options.seed)  # has it compiled, so that times compare
-        runs.append(measure(scene, contestant, sensors, places, options.spp, options.seed + 1_000_000 * number))
+        measure(scene, contestant, sensors, places, holds, 2, options.seed)  # has it compiled, so that times compare
+        runs.append(measure(scene, contestant, sensors, places, holds, options.spp, options.seed + 1_000_000 * number))
     report(options, sensors, reference_of(file), *runs)
 
 
