@@ -12,7 +12,9 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from guided_mitsuba import LANES, LIFT_M, Guide, estimate, load
+from guide_places import LANES, LIFT_M, Guide
+from guided_mitsuba import load
+from guided_paths import estimate
 
 
 def radiance(scene, guide, camera, samples, seed):
@@ -40,7 +42,8 @@ def radiance(scene, guide, camera, samples, seed):
         reflected_per_sr = hit.bsdf().eval(mi.BSDFContext(), hit, mi.Vector3f(0, 0, 1), hit.is_valid())[0]
         place = guide.at(hit.p, n, hit.is_valid()) if guide else mi.Int32(dr.full(mi.Int32, -1, dr.width(lanes)))
         with dr.suspend_grad():
-            irradiance = estimate(scene, guide, sampler, mi.Point3f(hit.p + LIFT_M * n), n, dr.full(mi.Bool, False, dr.width(lanes)), place)
+            on_surface = dr.full(mi.Bool, False, dr.width(lanes))
+            irradiance = estimate(scene, guide, sampler, hit.p + LIFT_M * n, n, on_surface, place)
         value = dr.select(hit.is_valid(), reflected_per_sr * irradiance, 0)
         image += np.array(value, dtype=np.float64).reshape(-1, count).sum(1)
     return image.reshape(height, width) / samples
@@ -60,7 +63,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", required=True)
     options = parser.parse_args()
-    scene, setup, _ = load(options.scene, options.oracle)
+    scene, setup, _, _ = load(options.scene, options.oracle)
     guide = Guide(scene, setup, options.guide, options.seed)
     camera = {"from": options.eye, "to": options.to, "view_deg": options.view_deg, "size": options.size}
     halves = [radiance(scene, contestant, camera, options.spp, options.seed) for contestant in (None, guide)]
