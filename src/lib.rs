@@ -42,8 +42,8 @@
 //! Modules stand in the order in which they may use each other. [`scene`] is what the user described, [`rays`] what a ray
 //! hits, [`voxel`] where matter is, [`skeleton`] where the void runs, [`sky`] what the sun and the sky give, [`light`] the
 //! question and the answer that all methods share, [`model`] all of this for one scene, [`flow`] the estimators,
-//! [`mod@trace`] the path tracer that is the truth, [`study`] how they compare, [`export`] the files that are written. Only
-//! [`scene`] and [`export`] touch files; any number of threads gives the same bits; every long step takes a
+//! [`mod@trace`] the path tracer that is the truth, [`daylight`] what surfaces receive of sun and sky, [`guide`] what a renderer is
+//! seeded with, [`study`] how they compare, [`export`] the files that are written. Only [`scene`] and [`export`] touch files; any number of threads gives the same bits; every long step takes a
 //! [`job::Progress`] and a [`job::Cancel`].
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

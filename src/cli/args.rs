@@ -2,6 +2,7 @@
 
 use super::daylight::DaylightArgs;
 use super::expose::ExposeArgs;
+use super::guide::GuideArgs;
 use super::sky::args::SkyArgs;
 use crate::scene::Method;
 use crate::study::stress::Failure;
@@ -69,6 +70,8 @@ pub enum Command {
         #[arg(long)]
         bounces: Option<u32>,
     },
+    /// What a renderer is seeded with: lobes of incident light, portals, virtual lights, probes, an irradiance cache, samples
+    Guide(GuideArgs),
     /// Stability where methods fail: scenes disturbed, and built-in scenes made for one failure each
     Stress(StressArgs),
     /// The sun's path, a picture of the sky, and the exposure map of a period: what comes from each direction

@@ -7,6 +7,7 @@ mod args;
 mod chart;
 mod daylight;
 mod expose;
+mod guide;
 mod peer;
 mod plan;
 mod report;

@@ -4,6 +4,7 @@ use super::args::{Args, Command, Common};
 use super::chart;
 use super::daylight;
 use super::expose;
+use super::guide;
 use super::plan::Plan;
 use super::report::{self, Analysis, Comparison};
 use super::sky;
@@ -41,6 +42,7 @@ pub fn run(args: Args, cancel: &Cancel) -> Result<()> {
             chart::run(&many, &timing, &peer, cancel)
         }
         Command::Trace { common, spp, bounces } => run_trace(&common, spp, bounces, cancel),
+        Command::Guide(args) => guide::run(args, cancel),
         Command::Stress(args) => stress::run(&args, cancel),
         Command::Sky(args) => sky::run(&args, cancel),
         Command::Expose(args) => expose::run(&args, cancel),
@@ -185,7 +187,10 @@ fn run_trace(common: &Common, spp: u32, bounces: Option<u32>, cancel: &Cancel) -
 }
 
 /// Loads the scene, makes the plan, and sets the number of threads.
-fn open(
+///
+/// # Errors
+/// A scene that cannot be read, threads that cannot be started, or an interrupt.
+pub fn open(
     common: &Common,
     method: Option<Method>,
     settings: Settings,
@@ -250,12 +255,12 @@ pub fn warnings_of(scene: &Scene, model: &Model) -> Vec<String> {
     scene.warnings.iter().cloned().chain(voxels).chain(missing(scene, &model.sources)).collect()
 }
 
+/// Said of a scene without sensors.
+pub const NO_SENSOR: &str = "the scene has no sensor";
+
 /// What a run can do without but its user hardly meant to leave out, a sentence each.
 fn missing(scene: &Scene, sources: &Sources) -> Vec<String> {
-    let missing = [
-        (sources.emitters.is_empty(), "the scene has no light"),
-        (scene.sensors.is_empty(), "the scene has no sensor"),
-    ];
+    let missing = [(sources.emitters.is_empty(), "the scene has no light"), (scene.sensors.is_empty(), NO_SENSOR)];
     missing.iter().filter(|(is_missing, _)| *is_missing).map(|(_, says)| (*says).to_owned()).collect()
 }
 

@@ -11,6 +11,7 @@ pub mod exposure;
 pub mod exposures;
 pub mod field;
 pub mod graphml;
+pub mod guide;
 #[cfg(feature = "cli")]
 mod legend;
 pub mod plan;

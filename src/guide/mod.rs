@@ -8,16 +8,144 @@
 //!
 //! Limits: those of the network. What the voxels close has no place of its own.
 
-use crate::light::Incident;
+pub mod cache;
+pub mod fit;
+pub mod necks;
+pub mod places;
+pub mod probes;
+pub mod samples;
+pub mod shares;
+pub mod shine;
+pub mod sights;
+pub mod straight;
+pub mod vpls;
+pub mod whole;
+
+use crate::flow::network::read::Tracks;
+use crate::flow::network::{Grounds, Network, Quality};
+use crate::job::{Cancel, Cancelled, Progress};
+use crate::light::{Incident, Settings};
+use crate::model::{Model, Probe};
 use glam::Vec3;
+use rayon::prelude::*;
+use shares::Shares;
+use shine::Shine;
+use straight::InView;
+
+/// Virtual point lights, about.
+const VIRTUAL_LIGHTS: usize = 1024;
+
+/// Told where nothing shines.
+const NO_LIGHT: &str = "no light shines into the void: all light in the guide is zero";
+
+/// A guide beside what it stands on, which a guided tracer asks for places.
+pub struct Seeded<'a> {
+    /// What measured the light.
+    pub network: Network<'a>,
+    /// The light in the zones of its void, in their order.
+    pub zones: Vec<Incident>,
+    /// What both say.
+    pub guide: Guide,
+}
+
+impl Seeded<'_> {
+    /// The places of [`Guiding`](crate::light::Guiding): those on walls, then the zones.
+    pub fn places(&self) -> Vec<&Incident> {
+        self.guide.walls.iter().map(|place| &place.incident).chain(&self.zones).collect()
+    }
+
+    /// Which of [`Seeded::places`] speaks for a point (metres): with the normal of the surface it lies on a wall place, where
+    /// there is one that looks the same way, else the zone it lies in. `None` where no void of ours is.
+    ///
+    /// Costs a few look-ups among the voxels, no ray.
+    pub fn place_of(&self, point_m: Vec3, normal: Option<Vec3>) -> Option<u32> {
+        let Grounds { model, zones, patches, .. } = &self.network.grounds;
+        let on_wall = normal.and_then(|normal| patches.near(model, zones, point_m, normal));
+        on_wall.or_else(|| {
+            let node = model.skeleton.nearest.node(model.voxels.lattice.voxel_at(point_m))?;
+            Some(self.guide.walls.len() as u32 + zones.at(node, point_m))
+        })
+    }
+
+    /// What comes to some points that are worth some hundred rays each, sensors or pixels; 0.3 ms a point on one thread.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `cancel` was raised.
+    pub fn at_probes(&self, probes: &[Probe], seed: u64, cancel: &Cancel) -> Result<Vec<Incident>, Cancelled> {
+        let shine = Shine::new(&self.network);
+        let at_probe = |(number, probe): (usize, &Probe)| {
+            cancel.check()?;
+            Ok(places::at_probe(&self.network, &shine, probe, seed, number as u64))
+        };
+        probes.par_iter().enumerate().map(at_probe).collect()
+    }
+}
+
+/// Everything that a renderer can be seeded with, for all emitters of a model; `settings` gives the seed. Costs a network of
+/// that quality and about as much again.
+///
+/// # Errors
+/// [`Cancelled`] when `cancel` was raised.
+pub fn guide<'a>(
+    model: &'a Model,
+    quality: &Quality,
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Seeded<'a>, Cancelled> {
+    // The part of each emitter comes by a cheaper way.
+    let settings = &Settings { shares: false, ..*settings };
+    let (mut network, lines) = Network::new(model, quality, settings, progress, cancel)?;
+    // A path may come to any wall, also where no point fell.
+    let Grounds { zones, patches, .. } = &mut network.grounds;
+    patches.fill_gaps(zones);
+    let shine = staged("shine", progress, cancel, || Shine::new(&network))?;
+    let radiosity_w_m2 = shine.means_w_m2();
+    let shares = staged("shares", progress, cancel, || Shares::new(&network))?;
+    let walls = staged("walls", progress, cancel, || places::at_walls(&network, &shine, &lines))?;
+    let views = staged("views", progress, cancel, || cache::views(&network, &walls, &lines, &radiosity_w_m2))?;
+    let walls = whole::walls(&network, walls, &shares, &views);
+    let zones = staged("open", progress, cancel, || places::in_zones(&network, &shine, &lines, settings.seed))?;
+    let tracks = staged("tracks", progress, cancel, || {
+        Tracks::new(&network.grounds, &lines, std::slice::from_ref(&radiosity_w_m2), 1, settings.seed)
+    })?;
+    let in_view = InView::new(&network, settings.seed);
+    let nodes = staged("nodes", progress, cancel, || {
+        whole::nodes(&network, places::at_nodes(&network, &zones), &tracks, &in_view, &shares)
+    })?;
+    let probes = staged("probes", progress, cancel, || probes::probes(&network, &tracks, &in_view))?;
+    let necks =
+        staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
+    let vpls = vpls::virtual_lights(&network, &shine, VIRTUAL_LIGHTS);
+    let cache = cache::records(&walls, &views);
+    let samples = staged("samples", progress, cancel, || samples::samples(&network, &shine, &lines))?;
+
+    let reflectances = network.grounds.patches.list.iter().map(|patch| patch.reflectance as f32).collect();
+    let dark = network.lamps().next().is_none().then(|| NO_LIGHT.to_owned());
+    let warnings = network.warnings().iter().cloned().chain(dark).collect();
+    let guide = Guide { nodes, walls, reflectances, necks, vpls, probes, cache, samples, warnings };
+    Ok(Seeded { network, zones, guide })
+}
+
+/// One step, reported; stops before it when asked to.
+fn staged<T>(stage: &str, progress: &dyn Progress, cancel: &Cancel, work: impl FnOnce() -> T) -> Result<T, Cancelled> {
+    cancel.check()?;
+    progress.begin(stage, 0);
+    let done = work();
+    progress.end();
+    Ok(done)
+}
 
 /// What a renderer is seeded with. Positions are the scene's own, metres.
 #[derive(Debug, Clone, Default)]
 pub struct Guide {
     /// The light at each node of the skeleton, in their order.
     pub nodes: Vec<Place>,
-    /// The light on walls: every zone of the void has a point on each side it sees.
+    /// The light on walls, one place for each patch of [`Seeded::network`], in their order: every zone of the void has a point
+    /// on each side it sees.
     pub walls: Vec<Place>,
+    /// Mean reflectance of the walls around each of [`Guide::walls`].
+    pub reflectances: Vec<f32>,
     /// The doorways and windows, those of the skeleton in their order.
     pub necks: Vec<Opening>,
     /// Virtual point lights.
@@ -118,6 +246,6 @@ pub struct TrainingSample {
     pub density_per_sr: f32,
     /// Distance to what shines, metres.
     pub distance_m: f32,
-    /// Bit 0: what shines is an emitter itself (else a wall that reflects).
+    /// As OpenPGL has them: [`samples::DIRECT_LIGHT`] where what shines is an emitter itself, 0 where it is a wall.
     pub flags: u32,
 }

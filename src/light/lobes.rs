@@ -12,6 +12,10 @@ use std::f64::consts::PI;
 /// Most lobes of a place.
 pub const MOST_LOBES: usize = 4;
 
+/// A lobe is turned to points no nearer than this share of its distance to what shines, and narrowed up to that share.
+const NEAREST_SHARE: f32 = 0.25;
+const FARTHEST_SHARE: f32 = 2.0;
+
 /// Below this concentration a lobe is taken for even over the sphere, which it is to a thousandth.
 const EVEN_BELOW: f64 = 1e-3;
 
@@ -57,6 +61,22 @@ impl Lobe {
     }
 }
 
+impl Lobe {
+    /// The lobe as a point sees it that lies `moved_m` from the place, metres: turned to what shines, and wider the nearer that
+    /// is. What is nearer than a quarter of the distance is seen as from there, for a lobe is no map of its surface.
+    pub fn seen_after(&self, moved_m: Vec3) -> Self {
+        let to_m = self.distance_m * self.direction - moved_m;
+        let distance_m = to_m.length();
+        let nearer = (distance_m / self.distance_m).clamp(NEAREST_SHARE, FARTHEST_SHARE);
+        Self {
+            direction: to_m.normalize_or(self.direction),
+            concentration: self.concentration * nearer * nearer,
+            distance_m: nearer * self.distance_m,
+            ..*self
+        }
+    }
+}
+
 /// The light that comes to a place, but for what comes straight from emitters in `lobes`, which a renderer asks for itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Incident {
@@ -67,16 +87,40 @@ pub struct Incident {
     /// Reflected light, at most [`MOST_LOBES`], the heaviest first; by irradiance (radiance times cosine) where there is a
     /// normal, by radiance where there is none. Empty where no reflected light comes.
     pub lobes: Vec<Lobe>,
+    /// Share of directions that are best drawn from the lobes rather than from the cosine (in the open: evenly); 0 without lobes.
+    pub trust: f32,
     /// What is reflected at least once before it arrives: irradiance on the surface, or scalar irradiance, W/m2.
     pub reflected_w_m2: f32,
     /// What arrives straight from each emitter of [`Sources`](super::Sources), W/m2, as above.
     pub direct_w_m2: Vec<f32>,
 }
 
+impl Incident {
+    /// The density of directions drawn from the lobes, per steradian; on a surface, what points below it is mirrored up.
+    pub fn density_per_sr(&self, towards: Vec3) -> f64 {
+        let all_around = |towards: Vec3| -> f64 {
+            self.lobes.iter().map(|lobe| f64::from(lobe.weight) * lobe.density_per_sr(towards)).sum()
+        };
+        match self.normal {
+            Some(normal) => all_around(towards) + all_around(towards - 2.0 * normal.dot(towards) * normal),
+            None => all_around(towards),
+        }
+    }
+
+    /// What comes to a point near the place: the same light, its lobes turned.
+    pub fn seen_from(&self, point_m: Vec3) -> Self {
+        let moved_m = point_m - self.position_m;
+        let lobes = self.lobes.iter().map(|lobe| lobe.seen_after(moved_m)).collect();
+        Self { position_m: point_m, lobes, direct_w_m2: self.direct_w_m2.clone(), ..*self }
+    }
+}
+
 /// What a guided tracer reads: places and what comes to them, and which of them speaks for a point.
 pub struct Guiding<'a> {
     /// The places.
     pub places: Vec<&'a Incident>,
+    /// Places that are the sensors' own, by the sensors' numbers; a sensor beyond them asks `place_of`.
+    pub at_sensors: Vec<u32>,
     /// The number of the place for a point (metres) on a surface of that normal, or in the open; `None` where none is known.
     pub place_of: &'a (dyn Fn(Vec3, Option<Vec3>) -> Option<u32> + Sync),
 }

@@ -112,6 +112,14 @@ impl Sampler {
         last
     }
 
+    /// The chance that [`Sampler::choose`] draws that emitter there. Cost: linear in the emitters.
+    pub fn chance(&self, emitter: usize, point_m: Vec3, normal: Option<Vec3>) -> f64 {
+        let (point, normal) = (point_m.as_dvec3(), normal.map(|normal| normal.as_dvec3()));
+        let total: f64 = self.lamps.iter().map(|lamp| lamp.promise(point, normal)).sum();
+        let own = self.lamps.get(emitter).map_or(0.0, |lamp| lamp.promise(point, normal));
+        if total > 0.0 { own / total } else { 0.0 }
+    }
+
     /// Draws a direction from `point_m` towards emitter number `emitter` by two numbers in [0, 1). `None` where the
     /// drawn part of it does not shine on the point (which counts as a sample of zero), or no such emitter is.
     pub fn sample(&self, emitter: usize, point_m: Vec3, random: [f64; 2]) -> Option<LightSample> {

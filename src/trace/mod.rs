@@ -8,6 +8,7 @@
 //! rare paths carry the light, the standard error is itself a rare event: [`Traced::top_share`] shows it, and such
 //! sensors are named in the warnings. A wall very near a point light gives rare, very bright samples.
 
+pub mod guided;
 mod path;
 mod random;
 
@@ -16,7 +17,7 @@ use crate::light::{Field, Reading, Sampler, Settings, Shape, Sources, Status};
 use crate::rays::Rays;
 use crate::scene::{Light, Scene, Sensor};
 use glam::DVec3;
-use path::Paths;
+use path::{Paths, Sample};
 use random::Random;
 use rayon::prelude::*;
 
@@ -79,13 +80,30 @@ pub fn trace(
 ) -> Result<Traced, Cancelled> {
     let sampler = Sampler::new(scene, sources, rays.epsilon_m());
     let paths = Paths { scene, rays, sampler: &sampler, max_bounces: settings.max_bounces.unwrap_or(u32::MAX) };
+    let sample = |sensor: usize, random: &mut Random| paths.sample(&scene.sensors[sensor], random);
+    let sums = sampled("trace", scene, &sample, settings, progress, cancel)?;
+    Ok(traced(scene, sources, &sums))
+}
+
+/// How one sample is taken at the sensor of that number.
+type TakeSample<'a> = dyn Fn(usize, &mut Random) -> Sample + Sync + 'a;
+
+/// The sums of samples that are taken one by one, for each sensor.
+fn sampled(
+    stage: &str,
+    scene: &Scene,
+    take: &TakeSample,
+    settings: &Settings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<Sums>, Cancelled> {
     let samples = settings.samples.max(1);
     let blocks = u64::from(samples.div_ceil(BLOCK));
     let total = blocks * scene.sensors.len() as u64;
 
     // Blocks run in any order on any thread, and are added up in their own.
     let mut sums = vec![Sums::default(); scene.sensors.len()];
-    progress.begin("trace", total);
+    progress.begin(stage, total);
     let mut first = 0;
     while first < total {
         let last = total.min(first + BLOCKS_HELD);
@@ -96,7 +114,7 @@ pub fn trace(
                 let (sensor, block) = ((first + offset as u64) / blocks, (first + offset as u64) % blocks);
                 let count = BLOCK.min(samples - block as u32 * BLOCK);
                 let random = Random::new(settings.seed, sensor, block);
-                let sums = Sums::of(&paths, &scene.sensors[sensor as usize], count, random);
+                let sums = Sums::of(take, sensor as usize, count, random);
                 progress.advance(1);
                 Ok(sums)
             })
@@ -107,12 +125,16 @@ pub fn trace(
         first = last;
     }
     progress.end();
+    Ok(sums)
+}
 
+/// The readings that sums stand for.
+fn traced(scene: &Scene, sources: &Sources, sums: &[Sums]) -> Traced {
     let standings: Vec<Standing> = scene.sensors.iter().map(|sensor| Standing::of(sensor, sources)).collect();
     let readings = sums.iter().zip(&standings).map(|(sums, standing)| sums.reading(*standing)).collect();
     let top_share: Vec<f64> = sums.iter().map(Sums::top_share).collect();
     let warnings = warnings(scene, &standings, &top_share);
-    Ok(Traced { field: Field { readings, warnings, shares: None }, top_share })
+    Traced { field: Field { readings, warnings, shares: None }, top_share }
 }
 
 /// What is known of a number of samples.
@@ -123,19 +145,22 @@ struct Sums {
     squares: f64,
     largest: f64,
     flux: DVec3,
+    /// Rays that the samples took.
+    rays: f64,
 }
 
 impl Sums {
-    fn of(paths: &Paths, sensor: &Sensor, count: u32, mut random: Random) -> Self {
+    fn of(take: &TakeSample, sensor: usize, count: u32, mut random: Random) -> Self {
         let mut sums = Self::default();
         for _ in 0..count {
-            let sample = paths.sample(sensor, &mut random);
+            let sample = take(sensor, &mut random);
             sums.add(&Self {
                 samples: 1.0,
                 value: sample.value_w_m2,
                 squares: sample.value_w_m2 * sample.value_w_m2,
                 largest: sample.value_w_m2,
                 flux: sample.flux_w_m2,
+                rays: f64::from(sample.rays),
             });
         }
         sums
@@ -147,6 +172,7 @@ impl Sums {
         self.squares += other.squares;
         self.largest = self.largest.max(other.largest);
         self.flux += other.flux;
+        self.rays += other.rays;
     }
 
     fn reading(&self, standing: Standing) -> Reading {

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Turns at surfaces before roulette begins. From then on a path survives each with the share of light that goes on there, so
 /// that its weight stays. Of 0, 1, 2, 3, 8, 16 and 24 turns, 3 gave the dark rooms of the gallery (reflectance 0.5) the
 /// smallest error in a given time; bright scenes like it a little later.
-const TURNS_BEFORE_ROULETTE: u32 = 4;
+pub(super) const TURNS_BEFORE_ROULETTE: u32 = 4;
 
 /// Highest chance to survive roulette. In a scene that absorbs less than 1% at a surface, paths still end after 100 turns
 /// or so, at the cost of noise; without it they would never end where the reflectance is 1.
@@ -34,6 +34,8 @@ pub(super) struct Paths<'a> {
 pub(super) struct Sample {
     pub(super) value_w_m2: f64,
     pub(super) flux_w_m2: DVec3,
+    /// Rays that it took, those towards lamps counted.
+    pub(super) rays: u32,
 }
 
 impl Paths<'_> {
@@ -42,7 +44,7 @@ impl Paths<'_> {
     pub(super) fn sample(&self, sensor: &Sensor, random: &mut Random) -> Sample {
         let normal = sensor.normal;
         let position_m = sensor.position_m + normal.unwrap_or(Vec3::ZERO) * self.rays.epsilon_m();
-        let mut sample = Sample::default();
+        let mut sample = Sample { rays: 1, ..Sample::default() };
         let mut add = |direction: Vec3, irradiance_w_m2: f64| {
             let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
             sample.value_w_m2 += cosine * irradiance_w_m2;
@@ -55,8 +57,9 @@ impl Paths<'_> {
             None => (uniform_on_sphere(random), 1.0 / (4.0 * PI)),
             Some(normal) => towards_hemisphere(normal, random),
         };
-        let radiance_w_m2_sr = self.reflected(position_m, direction, random);
+        let (radiance_w_m2_sr, rays) = self.reflected(position_m, direction, random);
         add(direction, radiance_w_m2_sr / density_per_sr);
+        sample.rays += rays;
         sample
     }
 
@@ -73,11 +76,12 @@ impl Paths<'_> {
         (share > 0.0).then(|| (light.direction, f64::from(share) * light.irradiance_w_m2 / probability))
     }
 
-    /// One sample of the reflected radiance that comes to `position_m` from `direction`, W/m2/sr.
-    fn reflected(&self, mut position_m: Vec3, mut direction: Vec3, random: &mut Random) -> f64 {
+    /// One sample of the reflected radiance that comes to `position_m` from `direction`, W/m2/sr, and the rays it took.
+    fn reflected(&self, mut position_m: Vec3, mut direction: Vec3, random: &mut Random) -> (f64, u32) {
         let (mut radiance_w_m2_sr, mut weight) = (0.0, 1.0);
-        let (mut bounces, mut turns) = (0, 0);
+        let (mut bounces, mut turns, mut rays) = (0, 0, 0);
         while bounces < self.max_bounces {
+            rays += 2;
             let Some(hit) = self.rays.closest(position_m, direction, f32::INFINITY) else { break };
             let Some((reflectance, transmittance)) = self.shares(hit.surface) else { break };
             let facing = hit.facing();
@@ -116,7 +120,7 @@ impl Paths<'_> {
                 direction = cosine_about(facing, random);
             }
         }
-        radiance_w_m2_sr
+        (radiance_w_m2_sr, rays)
     }
 
     /// Reflectance and transmittance of what was hit; `None` for lights and emissive faces, which are black.
@@ -127,7 +131,7 @@ impl Paths<'_> {
     }
 }
 
-fn uniform_on_sphere(random: &mut Random) -> Vec3 {
+pub(super) fn uniform_on_sphere(random: &mut Random) -> Vec3 {
     let [height, turn] = random.pair();
     let z = 1.0 - 2.0 * height;
     let ring = (1.0 - z * z).max(0.0).sqrt();
@@ -136,14 +140,14 @@ fn uniform_on_sphere(random: &mut Random) -> Vec3 {
 }
 
 /// By the cosine about `normal`: density `cos / pi`.
-fn cosine_about(normal: Vec3, random: &mut Random) -> Vec3 {
+pub(super) fn cosine_about(normal: Vec3, random: &mut Random) -> Vec3 {
     let [square, turn] = random.pair();
     about(normal, (1.0 - square).sqrt(), turn)
 }
 
 /// Half of the draws by the cosine and half uniform over the hemisphere, with the density of the mixture. By the cosine
 /// alone, the part of the net flux along the surface would have no finite variance.
-fn towards_hemisphere(normal: Vec3, random: &mut Random) -> (Vec3, f64) {
+pub(super) fn towards_hemisphere(normal: Vec3, random: &mut Random) -> (Vec3, f64) {
     let by_cosine = random.number() < 0.5;
     let [height, turn] = random.pair();
     let cosine = if by_cosine { (1.0 - height).sqrt() } else { 1.0 - height };

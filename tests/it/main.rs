@@ -76,3 +76,6 @@ mod dynamic;
 
 /// Exposure by maps, at one scale and at two.
 mod scales;
+
+/// What a renderer is seeded with: whole scenes, files, the command.
+mod guide;

@@ -251,10 +251,11 @@ fn an_interrupt_ends_it_with_130_and_leaves_nothing() {
     let out = folder.path().join("out");
     let scene = house(&folder.path().join("house"), &format!("{LAMP}{SENSORS}"));
     // Each would take minutes and more.
-    let commands: [&[&str]; 3] = [
+    let commands: [&[&str]; 4] = [
         &["trace", GALLERY, "--spp", "400000000"],
         &["compare", &scene, "--voxel", "0.1", "--spp", "400000000"],
         &["analyse", &scene, "--voxel", "0.006"],
+        &["guide", &scene, "--voxel", "0.006"],
     ];
     let children = commands.map(|command| {
         let mut command = lightvein(command);
@@ -278,8 +279,10 @@ fn streams_that_close_early_are_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     // A scene that is warned of.
     let scene = house(folder.path(), "");
-    for arguments in [["analyse", &scene], ["compare", &scene], ["trace", &scene]] {
-        let mut child = lightvein(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let out = folder.path().join("out");
+    let guide = ["guide", &scene, "-o", out.to_str().unwrap()];
+    for arguments in [&["analyse", &scene][..], &["compare", &scene], &["trace", &scene], &guide] {
+        let mut child = lightvein(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop((child.stdout.take(), child.stderr.take()));
         assert_eq!(child.wait().unwrap().code(), Some(0), "{arguments:?}");
     }
@@ -365,7 +368,12 @@ fn a_folder_as_a_scene_and_a_file_as_a_folder_are_named_at_once() {
     let file = folder.path().join("taken");
     fs::write(&file, "mine").unwrap();
     // Before any work: the samples would take hours.
-    for command in [&["trace", GALLERY, "--spp", "400000000"][..], &["analyse", GALLERY], &["compare", GALLERY]] {
+    for command in [
+        &["trace", GALLERY, "--spp", "400000000"][..],
+        &["analyse", GALLERY],
+        &["compare", GALLERY],
+        &["guide", GALLERY],
+    ] {
         let below = file.join("below");
         for out in [&file, &below] {
             let arguments = [command, &["-o", out.to_str().unwrap()]].concat();

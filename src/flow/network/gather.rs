@@ -62,13 +62,16 @@ pub fn gather(
 
 /// A ray from a sensor and what it meets.
 pub struct Sight {
-    patch: u32,
-    at: Start,
-    direction: Vec3,
+    /// What it meets.
+    pub patch: u32,
+    /// Where on it.
+    pub at: Start,
+    /// The ray's unit direction.
+    pub direction: Vec3,
     /// Share that comes through glazing, over pi and the density of rays: radiosity to irradiance.
-    weight: f64,
+    pub weight: f64,
     /// Whether it is one of every second ray.
-    odd: bool,
+    pub odd: bool,
 }
 
 /// What a sensor sees of the patches.

@@ -32,6 +32,8 @@ pub struct Line {
     pub from_m: Vec3,
     /// Its unit direction, from the first end to the second.
     pub direction: Vec3,
+    /// Unit normals of what stands at both ends, on the line's side; along the line where that is nothing.
+    pub normals: [Vec3; 2],
     /// Its length, metres; of one that leaves the scene as far as the scene reaches.
     pub length_m: f32,
     /// Glazing on it, in order.
@@ -82,9 +84,9 @@ fn from_wall(grounds: &Grounds, patch: u32, start: &Start, direction: Vec3, numb
     let ahead = walk(grounds, start.position_m + lift_m, direction)?;
     let odd = number % 2 == 1;
     if start.answer.passes <= 0.0 {
-        let Walk { end, panes, length_m, .. } = ahead;
-        let ends = [End::Patch(patch), end];
-        return Some(Line { ends, from_m: start.position_m, direction, length_m, panes, weight_m2: 0.0, odd });
+        let Walk { end, at, panes, length_m } = ahead;
+        let (ends, normals) = ([End::Patch(patch), end], [start.normal, at.normal]);
+        return Some(Line { ends, from_m: start.position_m, direction, normals, length_m, panes, weight_m2: 0.0, odd });
     }
     let behind = walk(grounds, start.position_m - lift_m, -direction)?;
     let other = Start { normal: -start.normal, ..*start };
@@ -105,6 +107,7 @@ fn joined(at_m: Vec3, direction: Vec3, behind: Walk, pane: Option<Pane>, ahead: 
         ends: [behind.end, ahead.end],
         from_m: at_m - behind.length_m * direction,
         direction,
+        normals: [behind.at.normal, ahead.at.normal],
         length_m: behind.length_m + ahead.length_m,
         panes: turned.chain(pane).chain(ahead.panes.iter().copied()).collect(),
         weight_m2: 0.0,

@@ -335,7 +335,7 @@ impl<'a> Network<'a> {
     }
 
     /// The lights that shine into the void.
-    fn lamps(&self) -> impl Iterator<Item = &Shining> {
+    pub fn lamps(&self) -> impl Iterator<Item = &Shining> {
         self.grounds.model.shining.iter().filter(|shining| shining.place.is_ok() && shining.flux_w > 0.0)
     }
 
@@ -352,6 +352,11 @@ impl<'a> Network<'a> {
             row[shining.emitter] += of_lamp.value_w_m2;
         }
         (sum, row)
+    }
+
+    /// What a reader of its fields should know, a sentence each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// The field of readings that each have a row of shares.

@@ -41,6 +41,9 @@ const STEPS_BACK: u32 = 24;
 const CREVICE_VOXELS: [f32; 8] = [1.5, 2.2, 3.2, 4.7, 7.0, 10.0, 15.0, 22.0];
 const CREVICE_LOOKS: u32 = 16;
 
+/// A place whose normal has at least this cosine to that of a patch looks where the patch does.
+const LEAST_ALIKE: f32 = 0.5;
+
 /// A side on which no point fell is looked for up to this many blocks away.
 const BESIDE_BLOCKS: i32 = 2;
 
@@ -201,6 +204,21 @@ impl Patches {
         self.of_kind.get(kind(zone, normal, answer) as usize).copied().filter(|&patch| patch != NONE)
     }
 
+    /// The patch of a point on a wall that reflects, by what void the wall faces there alone: a guess where a wall is thinner
+    /// than a voxel. A look at the voxels, no ray.
+    pub fn near(&self, model: &Model, zones: &Zones, point_m: Vec3, normal: Vec3) -> Option<u32> {
+        let lattice = &model.voxels.lattice;
+        let before =
+            |out: f32| model.skeleton.nearest.node(lattice.voxel_at(point_m + normal * (out * lattice.voxel_m)));
+        let node = STEPS_OUT_VOXELS
+            .into_iter()
+            .find_map(before)
+            .or_else(|| beside_corner(model, point_m, normal).first().map(|&(_, node, _)| node))?;
+        let patch = self.like(zones.at(node, point_m), normal, Answer { reflects: 1.0, passes: 0.0 })?;
+        let start = self.starts.get(self.list.get(patch as usize)?.starts.start)?;
+        (start.normal.dot(normal) > LEAST_ALIKE).then_some(patch)
+    }
+
     /// The patch of a point on a wall, its normal on the side that was hit, by a ray of that length that came
     /// along `direction`. `None` where no zone of ours lies before it.
     pub fn at(&self, model: &Model, zones: &Zones, hit: &Start, direction: Vec3, length_m: f32) -> Option<u32> {
@@ -243,6 +261,16 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3, met: bool) -> Option<
         // The void behind a thin wall is not before its inner side.
         return (is_sure || model.rays.clear(lifted_m, at_m)).then_some(node);
     }
+    let seen = beside_corner(model, point_m, normal).into_iter().take(MOST_LOOKS);
+    seen.map(|(_, node, centre_m)| (node, centre_m))
+        .find(|(_, centre_m)| model.rays.clear(lifted_m, *centre_m))
+        .map(|(node, _)| node)
+}
+
+/// The void around a place that lies in a corner of walls: squared distance, node and centre of each voxel in front of the
+/// place, the nearest first.
+fn beside_corner(model: &Model, point_m: Vec3, normal: Vec3) -> Vec<(f32, u32, Vec3)> {
+    let lattice = &model.voxels.lattice;
     let home = lattice.voxel_at(point_m + normal * (CORNER_OUT_VOXELS * lattice.voxel_m)).0;
     let mut beside: Vec<(f32, u32, Vec3)> = Vec::new();
     for step in 0..27 {
@@ -254,8 +282,7 @@ fn before_wall(model: &Model, point_m: Vec3, normal: Vec3, met: bool) -> Option<
         }
     }
     beside.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let seen = beside.iter().take(MOST_LOOKS).find(|(.., centre_m)| model.rays.clear(lifted_m, *centre_m));
-    seen.map(|&(_, node, _)| node)
+    beside
 }
 
 /// The node of the void that a ray of that length left before it came to a point.

@@ -130,6 +130,19 @@ impl Tracks {
         tracks
     }
 
+    /// Reflected light at a point of a zone: the scalar irradiance and the net flux of the first `columns` columns together, W/m2.
+    pub fn reflected(&self, columns: usize, zone: u32, point_m: Vec3) -> Direct {
+        let around = self.around(zone, point_m);
+        let value_w_m2 = self.scalar_w_m2(0..columns, &around);
+        // The mean of the fluxes' shares of the scalar irradiance, so that it follows the geometric mean.
+        let share = |zone: usize| {
+            let scalar_w_m2: f64 = self.scalar_w_m2[..columns].iter().map(|column| column[zone]).sum();
+            if scalar_w_m2 > 0.0 { self.flux_w_m2[zone] / scalar_w_m2 } else { DVec3::ZERO }
+        };
+        let flux_w_m2 = value_w_m2 * around.iter().map(|&(zone, part)| part * share(zone)).sum::<DVec3>();
+        Direct { value_w_m2, flux_w_m2 }
+    }
+
     /// The zones that have a say at a point of a zone, with shares that add up to 1.
     fn around(&self, zone: u32, point_m: Vec3) -> Vec<(usize, f64)> {
         let own = zone as usize;
@@ -158,7 +171,7 @@ impl Tracks {
 }
 
 /// The radiosities that a stretch of a line sees behind and ahead of it, weakened by glazing between, and that of the panes.
-fn seen_from(line: &Line, panes_before: usize, radiosity_w_m2: &[f64]) -> [f64; 2] {
+pub fn seen_from(line: &Line, panes_before: usize, radiosity_w_m2: &[f64]) -> [f64; 2] {
     let of = |patch: u32| radiosity_w_m2.get(patch as usize).copied().unwrap_or(0.0);
     let of_end = |end: End| if let End::Patch(patch) = end { of(patch) } else { 0.0 };
     let (before, after) = line.panes.split_at(panes_before.min(line.panes.len()));
@@ -242,13 +255,7 @@ fn at_probe(
     let zone = grounds.zones.at(node.index() as u32, probe.position_m);
     let around = tracks.around(zone, probe.position_m);
     let columns = network.reflected_w_m2.len();
-    let all_w_m2 = tracks.scalar_w_m2(0..columns, &around);
-    // The mean of the fluxes' shares of the scalar irradiance, so that it follows the geometric mean.
-    let share = |zone: usize| {
-        let scalar_w_m2: f64 = tracks.scalar_w_m2[..columns].iter().map(|column| column[zone]).sum();
-        if scalar_w_m2 > 0.0 { tracks.flux_w_m2[zone] / scalar_w_m2 } else { DVec3::ZERO }
-    };
-    let diffuse_w_m2 = all_w_m2 * around.iter().map(|&(zone, part)| part * share(zone)).sum::<DVec3>();
+    let Direct { value_w_m2: all_w_m2, flux_w_m2: diffuse_w_m2 } = tracks.reflected(columns, zone, probe.position_m);
 
     // What the diffuse field is worth to this probe, as a factor on the scalar irradiance.
     let on_wall = probe.normal.and_then(|normal| on_wall_w_m2(network, &around, probe.position_m, normal));

@@ -106,6 +106,11 @@ impl Zones {
         group.and_then(|group| self.groups.get(group)).filter(within).map_or(u32::MAX, |group| group.cell)
     }
 
+    /// All zones with the middles of their blocks, metres, which need not lie in the void.
+    pub fn middles_m(&self) -> impl Iterator<Item = (u32, Vec3)> + '_ {
+        self.groups.iter().flat_map(Group::zones)
+    }
+
     /// The groups as ranges of zones, each with its cell.
     pub fn groups(&self) -> impl Iterator<Item = (std::ops::Range<u32>, u32)> {
         self.groups.iter().map(|group| {

@@ -1,0 +1,136 @@
+//! From which directions shall a path go on, and which lamp shall it ask?
+
+use crate::light::{Incident, Lobe, MOST_LOBES};
+use crate::trace::random::Random;
+use glam::Vec3;
+use std::f64::consts::PI;
+
+/// Below this concentration a lobe is even.
+const LEAST_CONCENTRATION: f32 = 1e-3;
+
+/// A place's lobes, ready to be drawn from.
+#[derive(Debug, Clone)]
+pub(super) struct Mixture {
+    position_m: Vec3,
+    /// Whether it stands in the open, and so knows light from all around.
+    is_open: bool,
+    lobes: Vec<Lobe>,
+    trust: f64,
+    /// Light reflected at least once before it arrives, W/m2.
+    pub(super) reflected_w_m2: f64,
+    /// Straight from all emitters, W/m2.
+    pub(super) direct_w_m2: f64,
+    /// The share of each emitter and all before it in what comes straight.
+    shares_up_to: Vec<f64>,
+}
+
+/// Lobes as a point sees them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    /// Share of directions to draw from here.
+    pub(super) trust: f64,
+    is_open: bool,
+    lobes: [Lobe; MOST_LOBES],
+    factors: [f64; MOST_LOBES],
+    count: usize,
+}
+
+impl Mixture {
+    pub(super) fn of(incident: &Incident) -> Self {
+        let direct_w_m2: f64 = incident.direct_w_m2.iter().map(|&part| f64::from(part)).sum();
+        let mut up_to = 0.0;
+        let shares = incident.direct_w_m2.iter().map(|&part| {
+            up_to += f64::from(part) / direct_w_m2.max(f64::MIN_POSITIVE);
+            up_to
+        });
+        Self {
+            position_m: incident.position_m,
+            is_open: incident.normal.is_none(),
+            trust: f64::from(incident.trust),
+            lobes: incident.lobes.iter().take(MOST_LOBES).copied().collect(),
+            reflected_w_m2: f64::from(incident.reflected_w_m2),
+            direct_w_m2,
+            shares_up_to: shares.collect(),
+        }
+    }
+
+    /// The lobes as they are seen from a point near the place.
+    pub(super) fn seen_from(&self, point_m: Vec3) -> Seen {
+        let none = Lobe { direction: Vec3::Z, concentration: 0.0, weight: 0.0, distance_m: 1.0 };
+        let mut seen = Seen {
+            trust: self.trust,
+            is_open: self.is_open,
+            lobes: [none; MOST_LOBES],
+            factors: [0.0; MOST_LOBES],
+            count: self.lobes.len(),
+        };
+        let moved_m = point_m - self.position_m;
+        for (number, lobe) in self.lobes.iter().enumerate() {
+            let lobe = lobe.seen_after(moved_m);
+            let kappa = f64::from(lobe.concentration.max(LEAST_CONCENTRATION));
+            seen.factors[number] = f64::from(lobe.weight) * kappa / (2.0 * PI * -(-2.0 * kappa).exp_m1());
+            seen.lobes[number] = lobe;
+        }
+        seen
+    }
+
+    /// The reflected light that a surface there gets, or a point in the open, W/m2.
+    pub(super) fn expected_w_m2(&self, normal: Option<Vec3>) -> f64 {
+        // A surface in the open gets a quarter of the scalar irradiance, if light comes evenly.
+        if self.is_open && normal.is_some() { 0.25 * self.reflected_w_m2 } else { self.reflected_w_m2 }
+    }
+
+    /// The emitter that this number in [0, 1) picks by what each brings.
+    pub(super) fn emitter(&self, random: f64) -> usize {
+        self.shares_up_to.partition_point(|&up_to| up_to <= random).min(self.shares_up_to.len().saturating_sub(1))
+    }
+
+    /// The chance of that emitter.
+    pub(super) fn chance(&self, emitter: usize) -> f64 {
+        let up_to = |number: usize| self.shares_up_to.get(number).copied().unwrap_or(0.0);
+        up_to(emitter) - emitter.checked_sub(1).map_or(0.0, up_to)
+    }
+}
+
+impl Seen {
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// A direction drawn from the lobes; with a normal, what points below the surface is turned up by reflection in it.
+    pub(super) fn drawn(&self, normal: Option<Vec3>, random: &mut Random) -> Vec3 {
+        let mut left = random.number() as f32;
+        let mut number = 0;
+        while number + 1 < self.count && left >= self.lobes[number].weight {
+            left -= self.lobes[number].weight;
+            number += 1;
+        }
+        let direction = self.lobes[number].drawn(random.pair());
+        match normal {
+            Some(normal) if !self.is_open && normal.dot(direction) < 0.0 => {
+                direction - 2.0 * normal.dot(direction) * normal
+            }
+            _ => direction,
+        }
+    }
+
+    /// Its density, per steradian.
+    pub(super) fn density_per_sr(&self, direction: Vec3, normal: Option<Vec3>) -> f64 {
+        let above = self.all_around_per_sr(direction);
+        match normal {
+            Some(normal) if !self.is_open => {
+                above + self.all_around_per_sr(direction - 2.0 * normal.dot(direction) * normal)
+            }
+            _ => above,
+        }
+    }
+
+    fn all_around_per_sr(&self, direction: Vec3) -> f64 {
+        let lobes = self.lobes.iter().zip(&self.factors).take(self.count);
+        let density = |(lobe, factor): (&Lobe, &f64)| {
+            let exponent = lobe.concentration.max(LEAST_CONCENTRATION) * (lobe.direction.dot(direction) - 1.0);
+            if exponent < -30.0 { 0.0 } else { factor * f64::from(exponent.exp()) }
+        };
+        lobes.map(density).sum()
+    }
+}
