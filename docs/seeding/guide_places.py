@@ -30,8 +30,12 @@ LANES = 1 << 20
 class Guide:
     """The guide's places on the device: walls first, then nodes, then one of nothing. Place -1 is none."""
 
-    def __init__(self, scene, setup, folder, seed):
+    def __init__(self, scene, setup, folder, seed, wrong=False):
         guide = read_guide.read(folder)
+        if wrong:
+            # Each place is told what another knows.
+            for name in ("walls_lobes", "walls_lights", "nodes_lobes", "nodes_lights"):
+                guide[name] = np.random.default_rng(seed).permutation(guide[name])
         # Whether directions and roulette are guided too, or lights alone.
         self.directions = True
         walls, nodes = guide["walls"], guide["nodes"]
@@ -62,12 +66,14 @@ class Guide:
 
         Of lobes whose chi-square distance from the plain draw is d, of which chance makes e, the part 1 - e / d costs least.
         """
+        if not self.places:
+            return flat(np.zeros(1))
         place = np.repeat(np.arange(self.places), DRAWS_FOR_SHARE)
         normal = np.concatenate([self.normal, np.tile([0, 0, 1.0], (self.places - self.wall_count, 1))])
         n, p = vector(normal[place]), mi.Point3f(vector(self.position[place]))
         free = mi.Bool(place >= self.wall_count)
         sampler = mi.load_dict({"type": "independent"})
-        sampler.seed(seed, max(1, len(place)))
+        sampler.seed(seed, len(place))
         lobes = self.lobes_at(p, mi.UInt32(place), dr.full(mi.Bool, True, len(place)))
         towards = by_lobes(lobes, n, free, sampler.next_1d(), sampler.next_2d())
         # At grazing angles the quotient has no bound, and little light.

@@ -113,6 +113,7 @@ def main():
     parser.add_argument("--spp", type=int, default=1 << 16, help="samples a sensor, plain and guided each")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--own", action="store_true", help="Mitsuba's own path tracer too, through the oracle")
+    parser.add_argument("--wrong", action="store_true", help="shuffles what the guide's places know: noise, and no bias")
     parser.add_argument("--json", help="writes the figures there too")
     options = parser.parse_args()
     for path, what in ((options.scene, "no such scene file"), (options.oracle, "no such script"),
@@ -127,7 +128,7 @@ def main():
     sensors = file.sensors()
     began = time.process_time()
     try:
-        guide = Guide(scene, setup, options.guide, options.seed)
+        guide = Guide(scene, setup, options.guide, options.seed, options.wrong)
     except (OSError, ValueError, KeyError) as error:
         sys.exit(f"{options.guide}: not a whole guide: {type(error).__name__}: {error}")
     print(f"tables for {guide.places} places: {time.process_time() - began:.1f} processor seconds")
