@@ -10,6 +10,7 @@
 //! |---|---|
 //! | furnace | a closed grey box, whose mean irradiance has a closed form |
 //! | two_rooms | a doorway, and materials |
+//! | keyhole | a small hole that light only enters reflected |
 //! | gallery | the poster's table: seven sensors from lit to dark, at three reflectances; 200 more for charts |
 //! | corridor | bends and a dead end |
 //! | cave | curved, noisy walls |
@@ -35,8 +36,15 @@ use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("scenes"), PathBuf::from);
-    let scenes =
-        [rooms::furnace(), rooms::two_rooms(), gallery::gallery(), rooms::corridor(), cave::cave(), tower::tower()];
+    let scenes = [
+        rooms::furnace(),
+        rooms::two_rooms(),
+        rooms::keyhole(),
+        gallery::gallery(),
+        rooms::corridor(),
+        cave::cave(),
+        tower::tower(),
+    ];
     for scene in &scenes {
         check::check(scene)?;
         scene.write(&root)?;

@@ -1,4 +1,4 @@
-//! The plain scenes: a furnace, two rooms with a doorway, a corridor with bends.
+//! The plain scenes: a furnace, two rooms with a doorway, two with a keyhole, a corridor with bends.
 
 use glam::DVec3;
 
@@ -117,6 +117,46 @@ pub fn two_rooms() -> Scene {
         variants: vec![Variant {
             name: "two_rooms",
             about: "Two rooms and a doorway, the light in the first; reflectances come from the MTL file.",
+            reflectance: 0.5,
+            sensors: "sensors.csv",
+            reference: "reference.csv",
+        }],
+    }
+}
+
+/// Two rooms joined by a hole of 0.4 x 0.4 m alone. The light stands so far to the side of it that the wall's thickness hides
+/// it from the whole second room: what comes in has been reflected.
+pub fn keyhole() -> Scene {
+    let plan = Plan::default()
+        .void([0.0, 0.0, 0.0], [3.97, 3.63, 2.59])
+        .void([3.97, 1.63, 1.07], [4.17, 2.03, 1.47])
+        .void([4.17, -0.37, 0.0], [8.11, 3.87, 2.59]);
+    Scene {
+        name: "keyhole",
+        mesh: plan.mesh(|_| ""),
+        materials: vec![],
+        lights: vec![Light::Point { position: DVec3::new(3.44, 0.47, 2.17), flux_w: 100.0 }],
+        voxel_m: 0.1,
+        tables: vec![Table {
+            file: "sensors.csv",
+            about: "a_*: the room with the light; b_*: the room behind the hole, none of which sees the light. Those with a\n\
+                    normal are irradiance; *_on lie exactly on their wall, *_off 1 mm off it.",
+            sensors: vec![
+                scalar("a_middle", [1.83, 1.91, 1.27]),
+                scalar("a_corner", [0.37, 3.29, 0.41]),
+                planar("a_floor_on", [1.23, 2.71, 0.0], UP),
+                scalar("b_front", [4.73, 1.87, 1.23]),
+                scalar("b_middle", [6.29, 2.23, 1.03]),
+                scalar("b_corner", [7.79, 3.53, 2.21]),
+                scalar("b_beside", [4.43, 3.57, 0.37]),
+                planar("b_floor_off", [6.07, 0.83, 0.001], UP),
+                planar("b_far_on", [8.11, 1.37, 1.53], [-1.0, 0.0, 0.0]),
+                planar("b_back_off", [4.171, 0.61, 1.33], [1.0, 0.0, 0.0]),
+            ],
+        }],
+        variants: vec![Variant {
+            name: "keyhole",
+            about: "Two rooms and a hole of 0.4 x 0.4 m, the light in the first; none of it falls straight through the hole.",
             reflectance: 0.5,
             sensors: "sensors.csv",
             reference: "reference.csv",

@@ -9,6 +9,7 @@
 //! sensors are named in the warnings. A wall very near a point light gives rare, very bright samples.
 
 pub mod guided;
+pub mod learned;
 mod path;
 mod random;
 
@@ -153,17 +154,20 @@ impl Sums {
     fn of(take: &TakeSample, sensor: usize, count: u32, mut random: Random) -> Self {
         let mut sums = Self::default();
         for _ in 0..count {
-            let sample = take(sensor, &mut random);
-            sums.add(&Self {
-                samples: 1.0,
-                value: sample.value_w_m2,
-                squares: sample.value_w_m2 * sample.value_w_m2,
-                largest: sample.value_w_m2,
-                flux: sample.flux_w_m2,
-                rays: f64::from(sample.rays),
-            });
+            sums.add_sample(&take(sensor, &mut random));
         }
         sums
+    }
+
+    fn add_sample(&mut self, sample: &Sample) {
+        self.add(&Self {
+            samples: 1.0,
+            value: sample.value_w_m2,
+            squares: sample.value_w_m2 * sample.value_w_m2,
+            largest: sample.value_w_m2,
+            flux: sample.flux_w_m2,
+            rays: f64::from(sample.rays),
+        });
     }
 
     fn add(&mut self, other: &Self) {

@@ -18,7 +18,7 @@ pub(super) const TURNS_BEFORE_ROULETTE: u32 = 4;
 
 /// Highest chance to survive roulette. In a scene that absorbs less than 1% at a surface, paths still end after 100 turns
 /// or so, at the cost of noise; without it they would never end where the reflectance is 1.
-const MOST_SURVIVAL: f64 = 0.99;
+pub(super) const MOST_SURVIVAL: f64 = 0.99;
 
 /// All that a path needs to know.
 pub(super) struct Paths<'a> {
@@ -65,7 +65,7 @@ impl Paths<'_> {
 
     /// One sample of the light straight from the emitters: its direction, and the irradiance on a surface that squarely
     /// faces it. `None` for no light.
-    fn direct(&self, position_m: Vec3, normal: Option<Vec3>, random: &mut Random) -> Option<(Vec3, f64)> {
+    pub(super) fn direct(&self, position_m: Vec3, normal: Option<Vec3>, random: &mut Random) -> Option<(Vec3, f64)> {
         let (emitter, probability) = self.sampler.choose(position_m, normal, random.number())?;
         let light = self.sampler.sample(emitter, position_m, random.pair())?;
         if normal.is_some_and(|normal| normal.dot(light.direction) <= 0.0) {
@@ -124,7 +124,7 @@ impl Paths<'_> {
     }
 
     /// Reflectance and transmittance of what was hit; `None` for lights and emissive faces, which are black.
-    fn shares(&self, surface: Surface) -> Option<(f64, f64)> {
+    pub(super) fn shares(&self, surface: Surface) -> Option<(f64, f64)> {
         let Surface::Triangle(triangle) = surface else { return None };
         let material = self.scene.material(triangle as usize).filter(|material| !material.emits())?;
         Some((f64::from(material.reflects()), f64::from(material.passes())))

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Every generated scene.
-pub const SCENES: [&str; 6] = ["furnace", "two_rooms", "gallery", "corridor", "cave", "tower"];
+pub const SCENES: [&str; 7] = ["furnace", "two_rooms", "keyhole", "gallery", "corridor", "cave", "tower"];
 
 /// The test set, and how many loops the void of each scene has by its plan: pillars, a pier, doors between neighbours.
 pub const HELD_OUT: [(&str, usize); 5] = [

@@ -1,0 +1,89 @@
+//! Who competes: a name, what it makes before its first sample, and how it then answers.
+
+use glam::Vec3;
+use lightvein::flow::network::Quality;
+use lightvein::guide::guide;
+use lightvein::job::{Cancel, Quiet};
+use lightvein::light::{Guiding, Settings, Sources};
+use lightvein::model::Model;
+use lightvein::model::choose::choose_voxel_m;
+use lightvein::rays::Rays;
+use lightvein::scene::Scene;
+use lightvein::trace::guided::trace_guided;
+use lightvein::trace::learned::trace_learning;
+use lightvein::trace::{Traced, trace};
+use std::error::Error;
+use std::sync::Arc;
+
+/// Answers at the scene's sensors, from a seed and a number of samples a sensor.
+pub type Run<'a> = Box<dyn Fn(u64, u32) -> Traced + 'a>;
+
+/// Who competes.
+pub struct Contestant<'a> {
+    pub name: &'static str,
+    /// What comes before the first sample; its time is the contestant's.
+    pub prepare: Box<dyn Fn() -> Result<Run<'a>, Box<dyn Error>> + 'a>,
+    /// Whether samples of one run depend on earlier ones, so that a run of ten seconds is not ten of one.
+    pub learns: bool,
+}
+
+/// A scene as all contestants have it: reading it and its tree of surfaces is nobody's time.
+pub struct Stage<'a> {
+    pub scene: &'a Scene,
+    pub rays: Arc<Rays>,
+    pub sources: Sources,
+}
+
+impl<'a> Stage<'a> {
+    pub fn of(scene: &'a Scene) -> Self {
+        Self { scene, rays: Arc::new(Rays::new(scene)), sources: Sources::of(scene) }
+    }
+}
+
+/// All of them, `plain` first.
+pub fn contestants<'a>(stage: &'a Stage<'a>) -> Vec<Contestant<'a>> {
+    vec![
+        Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
+        Contestant { name: "guided", prepare: Box::new(|| guided(stage)), learns: false },
+        Contestant { name: "learned", prepare: Box::new(|| Ok(learning(stage))), learns: true },
+    ]
+}
+
+fn plain<'a>(stage: &'a Stage<'a>) -> Run<'a> {
+    Box::new(|seed, samples| {
+        let settings = Settings { seed, samples, ..Settings::default() };
+        trace(stage.scene, &stage.rays, &stage.sources, &settings, &Quiet, &Cancel::new()).expect("nobody cancels")
+    })
+}
+
+/// Voxels, skeleton, guide, and the sensors' own places; then paths that follow it.
+fn guided<'a>(stage: &'a Stage<'a>) -> Result<Run<'a>, Box<dyn Error>> {
+    let (quiet, cancel) = (&Quiet, &Cancel::new());
+    let model = match stage.scene.model.voxel_m {
+        Some(voxel_m) => Model::build(stage.scene, stage.rays.clone(), voxel_m, u64::MAX, quiet, cancel)?,
+        None => choose_voxel_m(stage.scene, &stage.rays, u64::MAX, quiet, cancel)?.model,
+    };
+    // The guide borrows the model and both serve the runs: it lives as long as the program.
+    let model: &Model = Box::leak(Box::new(model));
+    let seeded = guide(model, &Quality::MEDIUM, &Settings::default(), quiet, cancel)?;
+    let own = seeded.at_probes(&model.probes_at_sensors(stage.scene), 0, cancel)?;
+    Ok(Box::new(move |seed, samples| {
+        let mut places = seeded.places();
+        let first_own = places.len() as u32;
+        places.extend(&own);
+        let at_sensors = (first_own..places.len() as u32).collect();
+        let place_of = |at_m: Vec3, normal: Option<Vec3>| seeded.place_of(at_m, normal);
+        let guiding = Guiding { places, at_sensors, place_of: &place_of };
+        let settings = Settings { seed, samples, ..Settings::default() };
+        trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
+            .expect("nobody cancels")
+    }))
+}
+
+fn learning<'a>(stage: &'a Stage<'a>) -> Run<'a> {
+    Box::new(|seed, samples| {
+        let settings = Settings { seed, samples, ..Settings::default() };
+        trace_learning(stage.scene, &stage.rays, &stage.sources, &settings, &Quiet, &Cancel::new())
+            .expect("nobody cancels")
+    })
+}
