@@ -54,7 +54,7 @@ fn places_belong_to_patches_and_their_parts_add_up() {
         let scene = scene(name);
         let model = model(&scene);
         let seeded = seeded(&model);
-        let (guide, grounds) = (&seeded.guide, &seeded.network.grounds);
+        let (guide, grounds) = (&seeded.guide, &seeded.known.network.grounds);
         assert_eq!(guide.nodes.len(), model.skeleton.graph.node_count(), "{name}");
         assert_eq!(guide.walls.len(), grounds.patches.list.len(), "{name}");
         assert_eq!(guide.walls.len(), guide.cache.len(), "{name}");
@@ -65,7 +65,7 @@ fn places_belong_to_patches_and_their_parts_add_up() {
             let (at_m, normal) = (place.incident.position_m, place.incident.normal.expect("on a wall"));
             let starts = &grounds.patches.starts[patch.starts.clone()];
             assert!(starts.iter().any(|start| start.position_m == at_m && start.normal == normal), "{name}: {number}");
-            own += usize::from(seeded.place_of(at_m, Some(normal)) == Some(number as u32));
+            own += usize::from(seeded.known.place_of(at_m, Some(normal)) == Some(number as u32));
         }
         assert!(own * 10 > 8 * guide.walls.len(), "{name}: {own} of {} speak for themselves", guide.walls.len());
 
@@ -81,8 +81,8 @@ fn places_belong_to_patches_and_their_parts_add_up() {
             assert!(place.scalar_w_m2 * 1.3 >= direct_w_m2, "{name}: {place:?}");
         }
         for at in guide.probes.iter().map(|probe| probe.position_m) {
-            let place = seeded.place_of(at, None).expect("probes stand in the void") as usize;
-            assert!(place >= guide.walls.len() && place < seeded.places().len(), "{name}");
+            let place = seeded.known.place_of(at, None).expect("probes stand in the void") as usize;
+            assert!(place >= guide.walls.len() && place < seeded.known.walls.len(), "{name}");
         }
     }
 }
