@@ -22,10 +22,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let scene = Scene::load(Path::new(&path), &p, &c)?;
         let began = Instant::now();
         let rays = Arc::new(Rays::new(&scene));
-        let model = Model::build(&scene, rays.clone(), scene.model.voxel_m.unwrap_or(0.1), 4_000_000_000, &p, &c)?;
+        let model = Model::build(
+            &scene,
+            rays.clone(),
+            scene.model.voxel_m.unwrap_or(0.1) * e("VOXELS", 1.0) as f32,
+            4_000_000_000,
+            &p,
+            &c,
+        )?;
         let t_model = began.elapsed().as_secs_f64();
         let settings = Settings::default();
-        let seeded = guide(&model, &Quality::MEDIUM, &settings, &p, &c)?;
+        let seeded =
+            guide(&model, &if e("COARSE", 0.0) > 0.0 { Quality::COARSE } else { Quality::MEDIUM }, &settings, &p, &c)?;
         let t_guide = began.elapsed().as_secs_f64();
         let own = seeded.at_probes(&model.probes_at_sensors(&scene), 0, &c)?;
         let build = began.elapsed().as_secs_f64();

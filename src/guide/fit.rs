@@ -8,7 +8,7 @@
 
 use crate::light::{Incident, Lobe, MOST_LOBES};
 use glam::{DVec3, Vec3};
-use std::f64::consts::PI;
+use std::f32::consts::FRAC_1_PI;
 
 /// Light that comes from a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +22,9 @@ pub struct Sample {
     /// How far away what shines stands, metres.
     pub distance_m: f32,
 }
+
+/// Samples that are enough for a place: more would sharpen what four round lobes blur.
+const ENOUGH_SAMPLES: usize = 160;
 
 /// Steps of expectation and maximisation; later ones move lobes by less than their width.
 const STEPS: usize = 6;
@@ -39,8 +42,31 @@ const MOST_CONCENTRATION: f64 = 1000.0;
 /// Shares that are tried: never all, for lobes leave out what they do not know.
 const TRUSTS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
 
+/// Densities below the exponential of this, per steradian, are taken for nothing.
+const LEAST_LOGARITHM: f32 = -14.0;
+
 /// A lobe with less than this share is given up.
 const LEAST_SHARE: f64 = 0.01;
+
+/// At most so many samples as are enough for a few lobes, all of the same weight and in the same sum, drawn evenly along the sum
+/// of weights; as they are where they are few.
+pub fn thinned(samples: Vec<Sample>) -> Vec<Sample> {
+    if samples.len() <= ENOUGH_SAMPLES {
+        return samples;
+    }
+    let sum: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
+    let share = sum / ENOUGH_SAMPLES as f64;
+    let (mut up_to, mut next) = (0.0, 0.5 * share);
+    let mut kept = Vec::with_capacity(ENOUGH_SAMPLES);
+    for sample in &samples {
+        up_to += f64::from(sample.weight);
+        while next < up_to && kept.len() < ENOUGH_SAMPLES {
+            kept.push(Sample { weight: share as f32, ..*sample });
+            next += share;
+        }
+    }
+    kept
+}
 
 /// At most [`MOST_LOBES`] lobes for some samples, the heaviest first; none where no sample has weight. Linear in the samples.
 pub fn lobes(samples: &[Sample]) -> Vec<Lobe> {
@@ -67,14 +93,23 @@ pub fn trust(samples: &[Sample], incident: &Incident) -> f32 {
     if incident.lobes.is_empty() {
         return 0.0;
     }
-    let mut moments = [0.0; TRUSTS.len()];
+    let heights = heights(&incident.lobes);
+    let mut moments = [0.0_f64; TRUSTS.len()];
     for sample in samples {
-        let by_lobes = incident.density_per_sr(sample.direction);
-        let plainly =
-            incident.normal.map_or(1.0 / (4.0 * PI), |normal| f64::from(normal.dot(sample.direction).max(0.0)) / PI);
+        let towards = sample.direction;
+        // As `Incident::density_per_sr` has it.
+        let by_lobes = match incident.normal {
+            Some(normal) => {
+                density(&incident.lobes, &heights, towards)
+                    + density(&incident.lobes, &heights, towards - 2.0 * normal.dot(towards) * normal)
+            }
+            None => density(&incident.lobes, &heights, towards),
+        };
+        let plainly = incident.normal.map_or(0.25, |normal| normal.dot(towards).max(0.0)) * FRAC_1_PI;
         let amount = f64::from(sample.weight) * f64::from(sample.density);
         for (moment, trust) in moments.iter_mut().zip(TRUSTS) {
-            *moment += amount / (trust * by_lobes + (1.0 - trust) * plainly).max(f64::MIN_POSITIVE);
+            let trust = trust as f32;
+            *moment += amount / f64::from((trust * by_lobes + (1.0 - trust) * plainly).max(f32::MIN_POSITIVE));
         }
     }
     let best = (0..TRUSTS.len()).min_by(|&a, &b| moments[a].total_cmp(&moments[b]));
@@ -103,13 +138,28 @@ fn first(samples: &[Sample], sum: f64) -> Vec<Lobe> {
     lobes
 }
 
-/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
-/// single precision, for this is most of what a guide costs.
-fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+/// The logarithm of each lobe's share times its density where that is greatest.
+fn heights(lobes: &[Lobe]) -> [f32; MOST_LOBES] {
     let mut heights = [f32::NEG_INFINITY; MOST_LOBES];
     for (height, lobe) in heights.iter_mut().zip(lobes) {
         *height = (f64::from(lobe.weight) * lobe.density_per_sr(lobe.direction)).ln() as f32;
     }
+    heights
+}
+
+/// The density of some lobes together, per steradian; what is below a millionth per steradian is not counted.
+fn density(lobes: &[Lobe], heights: &[f32; MOST_LOBES], towards: Vec3) -> f32 {
+    let of = |(lobe, height): (&Lobe, &f32)| {
+        let logarithm = height + lobe.concentration * (lobe.direction.dot(towards) - 1.0);
+        if logarithm > LEAST_LOGARITHM { logarithm.exp() } else { 0.0 }
+    };
+    lobes.iter().zip(heights).map(of).sum()
+}
+
+/// The share of each lobe in each sample. In logarithms less the greatest, for narrow lobes underflow far from their middle; in
+/// single precision, for this is most of what a guide costs.
+fn expect(samples: &[Sample], lobes: &[Lobe], shares: &mut [[f64; MOST_LOBES]]) {
+    let heights = heights(lobes);
     for (sample, shares) in samples.iter().zip(shares) {
         let mut parts = heights;
         for (part, lobe) in parts.iter_mut().zip(lobes) {

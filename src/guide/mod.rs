@@ -35,6 +35,9 @@ use straight::InView;
 /// Virtual point lights, about.
 const VIRTUAL_LIGHTS: usize = 1024;
 
+/// Steps in which lines are looked at for the light in the open, in zones: twice the estimator's, at half its cost.
+const TRACK_STEPS: f32 = 1.0;
+
 /// Told where nothing shines.
 const NO_LIGHT: &str = "no light shines into the void: all light in the guide is zero";
 
@@ -101,24 +104,30 @@ pub fn guide<'a>(
     patches.fill_gaps(zones);
     let shine = staged("shine", progress, cancel, || Shine::new(&network))?;
     let radiosity_w_m2 = shine.means_w_m2();
-    let shares = staged("shares", progress, cancel, || Shares::new(&network))?;
-    let walls = staged("walls", progress, cancel, || places::at_walls(&network, &shine, &lines))?;
-    let views = staged("views", progress, cancel, || cache::views(&network, &walls, &lines, &radiosity_w_m2))?;
+
+    // Side by side, for each has a part that a single thread does.
+    let ((walls, zones), (tracks, shares)) = staged("light", progress, cancel, || {
+        let walls = || places::at_walls(&network, &shine, &lines);
+        let zones = || places::in_zones(&network, &shine, &lines, settings.seed);
+        let radiosity_w_m2 = std::slice::from_ref(&radiosity_w_m2);
+        let tracks = || Tracks::new(&network.grounds, &lines, radiosity_w_m2, 1, TRACK_STEPS, settings.seed);
+        rayon::join(|| rayon::join(walls, zones), || rayon::join(tracks, || Shares::new(&network)))
+    })?;
+    let ((views, samples), necks) = staged("sights", progress, cancel, || {
+        let views = || cache::views(&network, &walls, &lines, &radiosity_w_m2);
+        let samples = || samples::samples(&network, &shine, &lines);
+        let necks = || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed);
+        rayon::join(|| rayon::join(views, samples), necks)
+    })?;
+
+    let (nodes, probes) = staged("open", progress, cancel, || {
+        let in_view = InView::new(&network, settings.seed);
+        let nodes = whole::nodes(&network, places::at_nodes(&network, &zones), &tracks, &in_view, &shares);
+        (nodes, probes::probes(&network, &tracks, &in_view))
+    })?;
     let walls = whole::walls(&network, walls, &shares, &views);
-    let zones = staged("open", progress, cancel, || places::in_zones(&network, &shine, &lines, settings.seed))?;
-    let tracks = staged("tracks", progress, cancel, || {
-        Tracks::new(&network.grounds, &lines, std::slice::from_ref(&radiosity_w_m2), 1, settings.seed)
-    })?;
-    let in_view = InView::new(&network, settings.seed);
-    let nodes = staged("nodes", progress, cancel, || {
-        whole::nodes(&network, places::at_nodes(&network, &zones), &tracks, &in_view, &shares)
-    })?;
-    let probes = staged("probes", progress, cancel, || probes::probes(&network, &tracks, &in_view))?;
-    let necks =
-        staged("necks", progress, cancel, || necks::openings(&network, &lines, &radiosity_w_m2, settings.seed))?;
-    let vpls = vpls::virtual_lights(&network, &shine, VIRTUAL_LIGHTS);
     let cache = cache::records(&walls, &views);
-    let samples = staged("samples", progress, cancel, || samples::samples(&network, &shine, &lines))?;
+    let vpls = vpls::virtual_lights(&network, &shine, VIRTUAL_LIGHTS);
 
     let reflectances = network.grounds.patches.list.iter().map(|patch| patch.reflectance as f32).collect();
     let dark = network.lamps().next().is_none().then(|| NO_LIGHT.to_owned());

@@ -93,7 +93,7 @@ pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Inciden
             }
         }
         described(
-            &samples,
+            samples,
             Incident {
                 position_m,
                 normal: Some(normal),
@@ -137,7 +137,7 @@ pub fn at_probe(network: &Network, shine: &Shine, probe: &Probe, seed: u64, numb
         direct_w_m2: (0..model.sources.emitters.len()).map(straight).collect(),
         ..Incident::default()
     };
-    described(&samples, place)
+    described(samples, place)
 }
 
 /// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
@@ -182,7 +182,7 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
         turn(&crossed.sights, position_m, None, 1.0, &mut samples);
         let reflected_w_m2 = 2.0 * crossed.sights.iter().map(|sight| sight.weight).sum::<f64>() / track_m3;
         let reflected_w_m2 = reflected_w_m2 as f32;
-        described(&samples, Incident { position_m, reflected_w_m2, direct_w_m2, ..Incident::default() })
+        described(samples, Incident { position_m, reflected_w_m2, direct_w_m2, ..Incident::default() })
     };
     crossed.par_iter().enumerate().map(incident).collect()
 }
@@ -209,9 +209,10 @@ struct Crossed {
 }
 
 /// A place with the lobes that samples give it.
-fn described(samples: &[Sample], place: Incident) -> Incident {
-    let mut place = Incident { lobes: fit::lobes(samples), ..place };
-    place.trust = fit::trust(samples, &place);
+fn described(samples: Vec<Sample>, place: Incident) -> Incident {
+    let samples = fit::thinned(samples);
+    let mut place = Incident { lobes: fit::lobes(&samples), ..place };
+    place.trust = fit::trust(&samples, &place);
     place
 }
 

@@ -110,15 +110,14 @@ mod tests {
             seen_m2[sight.patch as usize] += sight.weight_m2;
             assert!(sight.normal.dot(sight.direction) > -1e-4, "{sight:?} looks into its wall");
             let End::Patch(far) = sight.far else { panic!("a closed room: {sight:?}") };
-            let from_x_m = sight.from_m.x;
-            if (from_x_m - 4.0).abs() < 1e-3 {
-                // The side of the pane that looks on sees what is there as it is.
-                assert_eq!(sight.radiosity_w_m2, shining[far as usize], "{sight:?}");
-                of_panes += 1;
-            } else if from_x_m < 4.0 {
-                assert_eq!(sight.radiosity_w_m2, 0.5 * shining[far as usize], "{sight:?}");
-                through += u32::from(is_behind(far));
-            }
+            let [from_x_m, to_x_m] = [0.0, sight.distance_m].map(|at_m| sight.from_m.x + at_m * sight.direction.x);
+            // The side of the pane that looks on sees what is there as it is.
+            let is_of_pane = (from_x_m - 4.0).abs() < 1e-3;
+            let is_through = !is_of_pane && (from_x_m < 4.0) != (to_x_m < 4.0);
+            let share = if is_through { 0.5 } else { 1.0 };
+            assert_eq!(sight.radiosity_w_m2, share * shining[far as usize], "{sight:?}");
+            through += u32::from(is_through && sight.radiosity_w_m2 > 0.0);
+            of_panes += u32::from(is_of_pane);
         }
         assert!(through > 100 && of_panes > 100, "{through} sights through the pane, {of_panes} from it");
         for (found_m2, wanted_m2) in seen_m2.iter().zip(&network.exchange.seen_m2) {
