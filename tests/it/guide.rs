@@ -54,7 +54,7 @@ fn places_belong_to_patches_and_their_parts_add_up() {
         let scene = scene(name);
         let model = model(&scene);
         let seeded = seeded(&model);
-        let (guide, grounds) = (&seeded.guide, &seeded.network.grounds);
+        let (guide, grounds) = (&seeded.guide, &seeded.known.network.grounds);
         assert_eq!(guide.nodes.len(), model.skeleton.graph.node_count(), "{name}");
         assert_eq!(guide.walls.len(), grounds.patches.list.len(), "{name}");
         assert_eq!(guide.walls.len(), guide.cache.len(), "{name}");
@@ -65,7 +65,7 @@ fn places_belong_to_patches_and_their_parts_add_up() {
             let (at_m, normal) = (place.incident.position_m, place.incident.normal.expect("on a wall"));
             let starts = &grounds.patches.starts[patch.starts.clone()];
             assert!(starts.iter().any(|start| start.position_m == at_m && start.normal == normal), "{name}: {number}");
-            own += usize::from(seeded.place_of(at_m, Some(normal)) == Some(number as u32));
+            own += usize::from(seeded.known.place_of(at_m, Some(normal)) == Some(number as u32));
         }
         assert!(own * 10 > 8 * guide.walls.len(), "{name}: {own} of {} speak for themselves", guide.walls.len());
 
@@ -81,8 +81,8 @@ fn places_belong_to_patches_and_their_parts_add_up() {
             assert!(place.scalar_w_m2 * 1.3 >= direct_w_m2, "{name}: {place:?}");
         }
         for at in guide.probes.iter().map(|probe| probe.position_m) {
-            let place = seeded.place_of(at, None).expect("probes stand in the void") as usize;
-            assert!(place >= guide.walls.len() && place < seeded.places().len(), "{name}");
+            let place = seeded.known.place_of(at, None).expect("probes stand in the void") as usize;
+            assert!(place >= guide.walls.len() && place < seeded.known.walls.len(), "{name}");
         }
     }
 }
@@ -128,7 +128,8 @@ fn a_furnace_is_even_in_every_form() {
     near(mean, sent_w_m2_sr, "samples");
 }
 
-/// The network, asked at the nodes for all light, says what the guide says of them.
+/// The network, asked at the nodes for all light, says what the guide says of them, but for the guide's longer steps along lines:
+/// less than what the network itself is off by.
 #[test]
 fn nodes_have_the_light_that_the_network_reads_there() {
     let scene = scene("gallery");
@@ -140,7 +141,7 @@ fn nodes_have_the_light_that_the_network_reads_there() {
     for (place, reading) in found.iter().zip(&wanted.readings) {
         off += (f64::from(place.scalar_w_m2) / reading.value_w_m2).ln().powi(2) / found.len() as f64;
     }
-    assert!(off.sqrt() < 0.05, "rms factor {}", off.sqrt().exp());
+    assert!(off.sqrt() < 0.1, "rms factor {}", off.sqrt().exp());
 }
 
 #[test]
