@@ -59,6 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Err(error) => eprintln!("skipped: {error}"),
         }
     }
+    report::print_summary(&findings);
     std::fs::create_dir_all(&options.out)?;
     let panels: Vec<loglog::Panel> = findings.iter().map(report::panel).collect();
     let says = "down is better; median over sensors; preparation and learning are in the time";

@@ -90,6 +90,27 @@ fn ratios(found: &Finding, outcome: &Outcome, budget: usize) -> Vec<f64> {
     ratios.filter(|ratio| !ratio.is_nan()).collect()
 }
 
+/// The table of `docs/seeding.md`: for each scene and contestant the seconds of preparation, and for each budget plain's mean
+/// square error over its own, median over sensors and, in brackets, at the worst.
+pub fn print_summary(findings: &[Finding]) {
+    let Some(first) = findings.first() else { return };
+    let rivals = || first.outcomes.iter().filter(|outcome| outcome.name != "plain");
+    let budgets: String = first.budgets_s.iter().map(|budget_s| format!(" {budget_s} s |")).collect();
+    let names: String = rivals().map(|outcome| format!(" {}: prepared |{budgets}", outcome.name)).collect();
+    let columns = 1 + rivals().count() * (1 + first.budgets_s.len());
+    println!("\n| scene |{names}\n|{}", "---|".repeat(columns));
+    for found in findings {
+        let cells = found.outcomes.iter().filter(|outcome| outcome.name != "plain").map(|outcome| {
+            let ratios = (0..found.budgets_s.len()).map(|budget| {
+                let ratios = ratios(found, outcome, budget);
+                format!(" {:.1} ({:.2}) |", median(&ratios), ratios.iter().copied().fold(f64::INFINITY, f64::min))
+            });
+            format!(" {:.2} s |{}", outcome.prepare_s, ratios.collect::<String>())
+        });
+        println!("| {} |{}", found.scene, cells.collect::<String>());
+    }
+}
+
 /// Time against error, a curve a contestant.
 pub fn panel(found: &Finding) -> Panel {
     let marks = found.outcomes.iter().flat_map(|outcome| {
