@@ -24,7 +24,7 @@ pub struct Sample {
 }
 
 /// Samples that are enough for a place: more would sharpen what four round lobes blur.
-const ENOUGH_SAMPLES: usize = 160;
+const ENOUGH_SAMPLES: usize = 128;
 
 /// Steps of expectation and maximisation; later ones move lobes by less than their width.
 const STEPS: usize = 6;

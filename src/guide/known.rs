@@ -51,9 +51,9 @@ pub(super) fn known_by_lines<'a>(
     let Grounds { zones, patches, .. } = &mut network.grounds;
     patches.fill_gaps(zones);
     let (walls, zones) = staged("lobes", progress, cancel, || {
-        let shine = Shine::new(&network);
-        let walls = || places::at_walls(&network, &shine, &lines);
-        rayon::join(walls, || places::in_zones(&network, &shine, &lines, settings.seed))
+        let ends_w_m2 = places::sent_by_ends(&Shine::new(&network), &lines);
+        let walls = || places::at_walls(&network, &lines, &ends_w_m2);
+        rayon::join(walls, || places::in_zones(&network, &lines, &ends_w_m2, settings.seed))
     })?;
     Ok((Known { network, walls, zones }, lines))
 }

@@ -52,20 +52,32 @@ struct Sight {
     weight: f64,
 }
 
+/// What stands at the two ends of each line sends out there, W/m2.
+pub fn sent_by_ends(shine: &Shine, lines: &[Line]) -> Vec<[f64; 2]> {
+    let sent = |line: &Line| {
+        let ends_m = [line.from_m, line.from_m + line.length_m * line.direction];
+        std::array::from_fn(|side| match line.ends[side] {
+            End::Patch(patch) => shine.at_w_m2(patch, ends_m[side]),
+            _ => 0.0,
+        })
+    };
+    lines.par_iter().with_min_len(256).map(sent).collect()
+}
+
 /// The light at every patch of the network, at that of its points nearest to its middle. What the patches of the same side
-/// beside it see counts too, for they see the same things from a little further on.
-pub fn at_walls(network: &Network, shine: &Shine, lines: &[Line]) -> Vec<Incident> {
+/// beside it see counts too, for they see the same things from a little further on. `ends_w_m2` is what [`sent_by_ends`] gives.
+pub fn at_walls(network: &Network, lines: &[Line], ends_w_m2: &[[f64; 2]]) -> Vec<Incident> {
     let grounds = &network.grounds;
     let patches = &grounds.patches;
     let mut sights: Vec<Vec<Sight>> = vec![Vec::new(); patches.list.len()];
-    for line in lines.iter().filter(|line| line.panes.is_empty()) {
+    for (line, [first_w_m2, last_w_m2]) in lines.iter().zip(ends_w_m2).filter(|(line, _)| line.panes.is_empty()) {
         let [first, last] = line.ends;
         let end_m = line.from_m + line.length_m * line.direction;
-        let ways = [(first, last, line.from_m, end_m), (last, first, end_m, line.from_m)];
-        for (here, there, from_m, to_m) in ways {
-            let (End::Patch(patch), End::Patch(other)) = (here, there) else { continue };
-            let sends_w_m2 = shine.at_w_m2(other, to_m);
-            if sends_w_m2 > 0.0 {
+        let ways = [(first, line.from_m, end_m, *last_w_m2), (last, end_m, line.from_m, *first_w_m2)];
+        for (here, from_m, to_m, sends_w_m2) in ways {
+            if let End::Patch(patch) = here
+                && sends_w_m2 > 0.0
+            {
                 let weight = line.weight_m2 * sends_w_m2;
                 sights[patch as usize].push(Sight { from_m, to_m, sends_w_m2, weight });
             }
@@ -142,7 +154,7 @@ pub fn at_probe(network: &Network, shine: &Shine, probe: &Probe, seed: u64, numb
 
 /// The light in every zone of the void, at the middle of what its lines show of it; straight from each emitter by one ray from
 /// there.
-pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> Vec<Incident> {
+pub fn in_zones(network: &Network, lines: &[Line], ends_w_m2: &[[f64; 2]], seed: u64) -> Vec<Incident> {
     let grounds = &network.grounds;
     let (model, zones) = (grounds.model, &grounds.zones);
     let in_view = InView::new(network, seed);
@@ -155,15 +167,14 @@ pub fn in_zones(network: &Network, shine: &Shine, lines: &[Line], seed: u64) -> 
     };
     let places: Vec<Option<(u32, Vec3)>> = lines.par_iter().enumerate().map(place).collect();
     let mut crossed = vec![Crossed::default(); zones.count];
-    for (line, place) in lines.iter().zip(places) {
+    for ((line, ends_w_m2), place) in lines.iter().zip(ends_w_m2).zip(places) {
         let Some((zone, at_m)) = place.filter(|_| line.panes.is_empty()) else { continue };
         let crossed = &mut crossed[zone as usize];
         let weight_m3 = line.weight_m2 * f64::from(line.length_m);
         crossed.track_m3 += weight_m3;
         crossed.moment += weight_m3 * at_m.as_dvec3();
         let end_m = line.from_m + line.length_m * line.direction;
-        for (end, to_m) in [(line.ends[0], line.from_m), (line.ends[1], end_m)] {
-            let sends_w_m2 = if let End::Patch(patch) = end { shine.at_w_m2(patch, to_m) } else { 0.0 };
+        for (&sends_w_m2, to_m) in ends_w_m2.iter().zip([line.from_m, end_m]) {
             if sends_w_m2 > 0.0 {
                 crossed.sights.push(Sight { from_m: at_m, to_m, sends_w_m2, weight: weight_m3 * sends_w_m2 });
             }

@@ -65,7 +65,7 @@ impl Paths<'_> {
         }
         let seen = mixture.map(|mixture| mixture.seen_from(position_m)).filter(|seen| !seen.is_empty());
         let (direction, density_per_sr) = match normal {
-            None => drawn(seen, None, random, |random| uniform_on_sphere(random), |_| 1.0 / (4.0 * PI)),
+            None => drawn(seen, None, random, uniform_on_sphere, |_| 1.0 / (4.0 * PI)),
             Some(normal) => drawn(
                 seen,
                 Some(normal),

@@ -18,7 +18,7 @@ const SOUND_SAMPLES: f64 = 128.0;
 const SOUND_SHARE: f64 = 0.1;
 
 /// Another stream of random numbers than that of the paths that count.
-const OTHER_SEED: u64 = 0x5eed_0f_a_9110;
+const OTHER_SEED: u64 = 0x05ee_d0fa_9110;
 
 /// How the pilot is traced; `None` where it would be too few samples.
 pub(super) fn settings(settings: &Settings) -> Option<Settings> {
