@@ -4,7 +4,7 @@ use glam::Vec3;
 use lightvein::flow::network::Quality;
 use lightvein::guide::known::known;
 use lightvein::job::{Cancel, Quiet};
-use lightvein::light::{Settings, Sources};
+use lightvein::light::{Incident, Settings, Sources};
 use lightvein::model::Model;
 use lightvein::model::choose::choose_voxel_m;
 use lightvein::rays::Rays;
@@ -40,12 +40,26 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// All of them, `plain` first.
-pub fn contestants<'a>(stage: &'a Stage<'a>) -> Vec<Contestant<'a>> {
+/// All of them, `plain` first; those with guides that say nothing or lie only where they are asked for.
+pub fn contestants<'a>(stage: &'a Stage<'a>, with_wrong: bool) -> Vec<Contestant<'a>> {
+    if with_wrong {
+        let misled = |lie: fn(&mut Incident)| move || misled(stage, lie);
+        return vec![
+            Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
+            Contestant {
+                name: "empty",
+                prepare: Box::new(misled(|place| *place = Incident::default())),
+                learns: false,
+            },
+            Contestant { name: "turned", prepare: Box::new(misled(turned)), learns: false },
+            Contestant { name: "boasting", prepare: Box::new(misled(boasting)), learns: false },
+            Contestant { name: "modest", prepare: Box::new(misled(modest)), learns: false },
+        ];
+    }
     vec![
         Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
         Contestant { name: "guided", prepare: Box::new(|| guided(stage, Quality::MEDIUM)), learns: false },
-        Contestant { name: "guided coarsely", prepare: Box::new(|| guided(stage, Quality::COARSE)), learns: false },
+        Contestant { name: "coarse", prepare: Box::new(|| guided(stage, Quality::COARSE)), learns: false },
         Contestant { name: "learned", prepare: Box::new(|| Ok(learning(stage))), learns: true },
     ]
 }
@@ -76,6 +90,47 @@ fn guided<'a>(stage: &'a Stage<'a>, quality: Quality) -> Result<Run<'a>, Box<dyn
         trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
             .expect("nobody cancels")
     }))
+}
+
+/// By a guide that was made to lie at every place; what it took to make is not counted.
+fn misled<'a>(stage: &'a Stage<'a>, lie: fn(&mut Incident)) -> Result<Run<'a>, Box<dyn Error>> {
+    let (quiet, cancel) = (&Quiet, &Cancel::new());
+    let voxel_m = 2.0 * stage.scene.model.voxel_m.unwrap_or(0.1);
+    let model = Model::build(stage.scene, stage.rays.clone(), voxel_m, u64::MAX, quiet, cancel)?;
+    let model: &Model = Box::leak(Box::new(model));
+    let mut known = known(model, &Quality::MEDIUM, &Settings::default(), quiet, cancel)?;
+    let mut at_sensors = known.at_probes(&model.probes_at_sensors(stage.scene), 0, cancel)?;
+    known.walls.iter_mut().chain(&mut known.zones).chain(&mut at_sensors).for_each(lie);
+    Ok(Box::new(move |seed, samples| {
+        let place_of = |at_m: Vec3, normal: Option<Vec3>| known.place_of(at_m, normal);
+        let guiding = known.guiding(&at_sensors, &place_of);
+        let settings = Settings { seed, samples, ..Settings::default() };
+        trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
+            .expect("nobody cancels")
+    }))
+}
+
+/// Light comes from the other side, narrowly, and for sure; the lamps are each other's.
+fn turned(place: &mut Incident) {
+    for lobe in &mut place.lobes {
+        let flat = place.normal.unwrap_or(Vec3::ZERO);
+        lobe.direction = (2.0 * lobe.direction.dot(flat) * flat - lobe.direction).normalize();
+        lobe.concentration = 500.0;
+    }
+    place.trust = 0.8;
+    let lamps = place.direct_w_m2.len();
+    place.direct_w_m2.rotate_left(lamps.min(1));
+}
+
+/// A hundred times too much light is expected at every place but the sensors' like.
+fn boasting(place: &mut Incident) {
+    place.reflected_w_m2 *= if place.normal.is_some() { 100.0 } else { 1.0 };
+}
+
+/// Hardly any light is expected.
+fn modest(place: &mut Incident) {
+    place.reflected_w_m2 *= if place.normal.is_some() { 0.01 } else { 1.0 };
+    place.direct_w_m2.iter_mut().for_each(|direct_w_m2| *direct_w_m2 *= 0.01);
 }
 
 fn learning<'a>(stage: &'a Stage<'a>) -> Run<'a> {

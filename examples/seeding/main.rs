@@ -1,13 +1,14 @@
 //! Does a guide from the skeleton help a path tracer? Error in equal time and by equal samples, for `docs/seeding.md`.
 //!
 //!     cargo run --release --example seeding -- [SCENE.toml ...] [-o FOLDER] [--seconds 60] [--measure 20] [--truth 60]
-//!         [--busy]
+//!         [--busy] [--wrong]
 //!
 //! Contestants: `plain` (next-event estimation and roulette alone), `guided` (by lobes from the network; voxels, skeleton and
-//! guide count into its time) and `learned` (an SD-tree trained while it renders; learning counts into its time). Without scenes:
+//! guide count into its time), `coarse` (the same with fewer and larger places) and `learned` (an SD-tree trained while it renders; learning counts into its time). Without scenes:
 //! those of [`SCENES`]; a scene that cannot be read is skipped and named. How errors are taken is told in `measure`. Writes
 //! `seeding.csv`, a row a sensor, budget and contestant, and `seeding.svg`. About five minutes a scene, on a
-//! quiet machine; on another `--busy` counts the processors' time.
+//! quiet machine; on another `--busy` counts the processors' time. `--wrong` lets guides compete that say nothing or lie; what it
+//! took to make them is in their time, to be left out.
 
 mod contestants;
 mod measure;
@@ -58,6 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Err(error) => eprintln!("skipped: {error}"),
         }
     }
+    report::print_summary(&findings);
     std::fs::create_dir_all(&options.out)?;
     let panels: Vec<loglog::Panel> = findings.iter().map(report::panel).collect();
     let says = "down is better; median over sensors; preparation and learning are in the time";
@@ -68,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn options() -> Result<Options, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let effort = Effort { clock: Clock::Wall, longest_s: 60.0, measure_s: 20.0, truth_s: 60.0 };
+    let effort = Effort { clock: Clock::Wall, longest_s: 60.0, measure_s: 20.0, truth_s: 60.0, with_wrong: false };
     let mut options = Options { scenes: Vec::new(), out: root.join("docs/charts"), effort };
     let mut args = std::env::args_os().skip(1).map(PathBuf::from);
     while let Some(arg) = args.next() {
@@ -78,6 +80,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             Some("--seconds") => options.effort.longest_s = seconds(&value()?)?,
             Some("--measure") => options.effort.measure_s = seconds(&value()?)?,
             Some("--truth") => options.effort.truth_s = seconds(&value()?)?,
+            Some("--wrong") => options.effort.with_wrong = true,
             Some("--busy") => options.effort.clock = Clock::Processors,
             Some(flag) if flag.starts_with('-') => return Err(format!("{flag} is not known").into()),
             _ => options.scenes.push(arg),

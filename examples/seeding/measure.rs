@@ -60,6 +60,8 @@ pub struct Effort {
     pub measure_s: f64,
     /// For each contestant's part in the truth.
     pub truth_s: f64,
+    /// Whether plain competes with wrong guides instead.
+    pub with_wrong: bool,
 }
 
 /// What a contestant is at each sensor.
@@ -107,8 +109,10 @@ struct Ready<'a> {
 /// Measures all contestants in a scene.
 pub fn scene(scene: &Scene, effort: &Effort) -> Result<Finding, Box<dyn Error>> {
     let stage = Stage::of(scene);
-    let ready: Vec<Ready> =
-        contestants(&stage).iter().map(|one| prepared(one, effort.clock)).collect::<Result<_, _>>()?;
+    let ready: Vec<Ready> = contestants(&stage, effort.with_wrong)
+        .iter()
+        .map(|one| prepared(one, effort.clock))
+        .collect::<Result<_, _>>()?;
     let independent: Vec<&Ready> = ready.iter().filter(|one| !one.learns).collect();
 
     let (truth_w_m2, truth_error) = truth(&slices(&independent, TRUTH_SEED, effort.truth_s, effort.clock));

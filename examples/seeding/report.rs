@@ -50,6 +50,22 @@ pub fn print(found: &Finding) {
             );
         }
     }
+    let chosen: Vec<String> = (0..found.budgets_s.len())
+        .filter_map(|budget| {
+            let outcome = chosen(found, budget)?;
+            let ratio = median(&ratios(found, outcome, budget));
+            Some(format!("{} s {} {ratio:.2}", found.budgets_s[budget], outcome.name))
+        })
+        .collect();
+    if !chosen.is_empty() {
+        println!("  by the finer guide that takes no more than a tenth of the budget: {}", chosen.join(", "));
+    }
+}
+
+/// The guide for a budget: the finer one if making it takes no more than a tenth of the budget, else the coarser.
+fn chosen(found: &Finding, budget: usize) -> Option<&Outcome> {
+    let named = |name: &str| found.outcomes.iter().find(|outcome| outcome.name == name);
+    named("guided").filter(|fine| fine.prepare_s <= 0.1 * found.budgets_s[budget]).or_else(|| named("coarse"))
 }
 
 fn plain(found: &Finding) -> Option<&Outcome> {
@@ -72,6 +88,27 @@ fn ratios(found: &Finding, outcome: &Outcome, budget: usize) -> Vec<f64> {
     let plain = plain(found).map_or(&outcome.squares[budget], |plain| &plain.squares[budget]);
     let ratios = plain.iter().zip(&outcome.squares[budget]).map(|(plain, its)| plain / its);
     ratios.filter(|ratio| !ratio.is_nan()).collect()
+}
+
+/// The table of `docs/seeding.md`: for each scene and contestant the seconds of preparation, and for each budget plain's mean
+/// square error over its own, median over sensors and, in brackets, at the worst.
+pub fn print_summary(findings: &[Finding]) {
+    let Some(first) = findings.first() else { return };
+    let rivals = || first.outcomes.iter().filter(|outcome| outcome.name != "plain");
+    let budgets: String = first.budgets_s.iter().map(|budget_s| format!(" {budget_s} s |")).collect();
+    let names: String = rivals().map(|outcome| format!(" {}: prepared |{budgets}", outcome.name)).collect();
+    let columns = 1 + rivals().count() * (1 + first.budgets_s.len());
+    println!("\n| scene |{names}\n|{}", "---|".repeat(columns));
+    for found in findings {
+        let cells = found.outcomes.iter().filter(|outcome| outcome.name != "plain").map(|outcome| {
+            let ratios = (0..found.budgets_s.len()).map(|budget| {
+                let ratios = ratios(found, outcome, budget);
+                format!(" {:.1} ({:.2}) |", median(&ratios), ratios.iter().copied().fold(f64::INFINITY, f64::min))
+            });
+            format!(" {:.2} s |{}", outcome.prepare_s, ratios.collect::<String>())
+        });
+        println!("| {} |{}", found.scene, cells.collect::<String>());
+    }
 }
 
 /// Time against error, a curve a contestant.

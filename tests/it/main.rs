@@ -79,3 +79,4 @@ mod scales;
 
 /// What a renderer is seeded with: whole scenes, files, the command.
 mod guide;
+mod guided;

@@ -8,6 +8,12 @@ use std::f64::consts::PI;
 /// Below this concentration a lobe is even.
 const LEAST_CONCENTRATION: f32 = 1e-3;
 
+/// No lobe is narrower; beyond, single precision tells directions apart no more.
+const MOST_CONCENTRATION: f32 = 1e5;
+
+/// However much a place trusts its lobes, some paths go by the cosine, for lobes leave out what they do not know.
+const MOST_TRUST: f64 = 0.95;
+
 /// A place's lobes, ready to be drawn from.
 #[derive(Debug, Clone)]
 pub(super) struct Mixture {
@@ -36,19 +42,35 @@ pub(super) struct Seen {
 }
 
 impl Mixture {
+    /// A place ready to be drawn from. What is no number, below 0 or without a direction is left out, shares are made to add up
+    /// to 1: a broken guide may be slow but not wrong.
     pub(super) fn of(incident: &Incident) -> Self {
-        let direct_w_m2: f64 = incident.direct_w_m2.iter().map(|&part| f64::from(part)).sum();
+        let amount = |number: f32| if number.is_finite() { f64::from(number.max(0.0)) } else { 0.0 };
+        let sound = |lobe: &&Lobe| {
+            let numbers = [lobe.concentration, lobe.weight, lobe.distance_m];
+            lobe.direction.is_normalized() && numbers.iter().all(|number| number.is_finite() && *number >= 0.0)
+        };
+        let lobes = incident.lobes.iter().filter(sound).take(MOST_LOBES);
+        let mut lobes: Vec<Lobe> =
+            lobes.map(|lobe| Lobe { concentration: lobe.concentration.min(MOST_CONCENTRATION), ..*lobe }).collect();
+        let weight: f32 = lobes.iter().map(|lobe| lobe.weight).sum();
+        if weight.is_finite() && weight > 0.0 && incident.position_m.is_finite() {
+            lobes.iter_mut().for_each(|lobe| lobe.weight /= weight);
+        } else {
+            lobes.clear();
+        }
+        let direct_w_m2: f64 = incident.direct_w_m2.iter().map(|&part| amount(part)).sum();
         let mut up_to = 0.0;
         let shares = incident.direct_w_m2.iter().map(|&part| {
-            up_to += f64::from(part) / direct_w_m2.max(f64::MIN_POSITIVE);
+            up_to += amount(part) / direct_w_m2.max(f64::MIN_POSITIVE);
             up_to
         });
         Self {
             position_m: incident.position_m,
             is_open: incident.normal.is_none(),
-            trust: f64::from(incident.trust),
-            lobes: incident.lobes.iter().take(MOST_LOBES).copied().collect(),
-            reflected_w_m2: f64::from(incident.reflected_w_m2),
+            trust: amount(incident.trust).min(MOST_TRUST),
+            lobes,
+            reflected_w_m2: amount(incident.reflected_w_m2),
             direct_w_m2,
             shares_up_to: shares.collect(),
         }

@@ -62,8 +62,8 @@ impl Directions {
         // Of what is to be filled: its number, what it was cut into before, the light in its quarters, its depth.
         let mut open = vec![(0_u32, 0_u32, self.cuts.first().map_or([0.0; 4], |cut| cut.light), 1)];
         while let Some((number, before, light, depth)) = open.pop() {
-            for quarter in 0..4 {
-                if depth >= MOST_DEPTH || light[quarter] <= MOST_SHARE * total {
+            for (quarter, &its) in light.iter().enumerate() {
+                if depth >= MOST_DEPTH || its <= MOST_SHARE * total {
                     continue;
                 }
                 let part = refined.cuts.len() as u32;
@@ -72,7 +72,7 @@ impl Directions {
                     cut.parts[quarter] = part;
                 }
                 let inner = self.cuts.get(before as usize).map_or(WHOLE, |cut| cut.parts[quarter]);
-                let inner_light = self.cuts.get(inner as usize).map_or([0.25 * light[quarter]; 4], |cut| cut.light);
+                let inner_light = self.cuts.get(inner as usize).map_or([0.25 * its; 4], |cut| cut.light);
                 open.push((part, inner, inner_light, depth + 1));
             }
         }
