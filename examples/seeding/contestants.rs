@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lightvein::flow::network::Quality;
-use lightvein::guide::known::known;
+use lightvein::guide::known::{QUALITY, known};
 use lightvein::job::{Cancel, Quiet};
 use lightvein::light::{Incident, Settings, Sources};
 use lightvein::model::Model;
@@ -58,7 +58,7 @@ pub fn contestants<'a>(stage: &'a Stage<'a>, with_wrong: bool) -> Vec<Contestant
     }
     vec![
         Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
-        Contestant { name: "guided", prepare: Box::new(|| guided(stage, Quality::MEDIUM)), learns: false },
+        Contestant { name: "guided", prepare: Box::new(|| guided(stage, QUALITY)), learns: false },
         Contestant { name: "coarse", prepare: Box::new(|| guided(stage, Quality::COARSE)), learns: false },
         Contestant { name: "learned", prepare: Box::new(|| Ok(learning(stage))), learns: true },
     ]
@@ -98,7 +98,7 @@ fn misled<'a>(stage: &'a Stage<'a>, lie: fn(&mut Incident)) -> Result<Run<'a>, B
     let voxel_m = 2.0 * stage.scene.model.voxel_m.unwrap_or(0.1);
     let model = Model::build(stage.scene, stage.rays.clone(), voxel_m, u64::MAX, quiet, cancel)?;
     let model: &Model = Box::leak(Box::new(model));
-    let mut known = known(model, &Quality::MEDIUM, &Settings::default(), quiet, cancel)?;
+    let mut known = known(model, &QUALITY, &Settings::default(), quiet, cancel)?;
     let mut at_sensors = known.at_probes(&model.probes_at_sensors(stage.scene), 0, cancel)?;
     known.walls.iter_mut().chain(&mut known.zones).chain(&mut at_sensors).for_each(lie);
     Ok(Box::new(move |seed, samples| {

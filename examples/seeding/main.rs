@@ -1,7 +1,7 @@
 //! Does a guide from the skeleton help a path tracer? Error in equal time and by equal samples, for `docs/seeding.md`.
 //!
 //!     cargo run --release --example seeding -- [SCENE.toml ...] [-o FOLDER] [--seconds 60] [--measure 20] [--truth 60]
-//!         [--busy] [--wrong]
+//!         [--learn 60] [--busy] [--wrong]
 //!
 //! Contestants: `plain` (next-event estimation and roulette alone), `guided` (by lobes from the network; voxels, skeleton and
 //! guide count into its time), `coarse` (the same with fewer and larger places) and `learned` (an SD-tree trained while it renders; learning counts into its time). Without scenes:
@@ -70,7 +70,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn options() -> Result<Options, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let effort = Effort { clock: Clock::Wall, longest_s: 60.0, measure_s: 20.0, truth_s: 60.0, with_wrong: false };
+    let effort = Effort {
+        clock: Clock::Wall,
+        longest_s: 60.0,
+        measure_s: 20.0,
+        truth_s: 60.0,
+        learn_s: 60.0,
+        with_wrong: false,
+    };
     let mut options = Options { scenes: Vec::new(), out: root.join("docs/charts"), effort };
     let mut args = std::env::args_os().skip(1).map(PathBuf::from);
     while let Some(arg) = args.next() {
@@ -80,6 +87,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             Some("--seconds") => options.effort.longest_s = seconds(&value()?)?,
             Some("--measure") => options.effort.measure_s = seconds(&value()?)?,
             Some("--truth") => options.effort.truth_s = seconds(&value()?)?,
+            Some("--learn") => options.effort.learn_s = seconds(&value()?)?,
             Some("--wrong") => options.effort.with_wrong = true,
             Some("--busy") => options.effort.clock = Clock::Processors,
             Some(flag) if flag.starts_with('-') => return Err(format!("{flag} is not known").into()),

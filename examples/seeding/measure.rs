@@ -60,6 +60,8 @@ pub struct Effort {
     pub measure_s: f64,
     /// For each contestant's part in the truth.
     pub truth_s: f64,
+    /// The longest budget of what learns, which runs it in full.
+    pub learn_s: f64,
     /// Whether plain competes with wrong guides instead.
     pub with_wrong: bool,
 }
@@ -120,7 +122,7 @@ pub fn scene(scene: &Scene, effort: &Effort) -> Result<Finding, Box<dyn Error>> 
     let budgets_s: Vec<f64> = BUDGETS_S.into_iter().filter(|&budget_s| budget_s <= effort.longest_s).collect();
     let outcomes = ready.iter().map(|one| match measured.next_if(|_| !one.learns) {
         Some(slices) => outcome_of_slices(one, &slices, &truth_w_m2, &budgets_s),
-        None => outcome_of_learning(one, &truth_w_m2, &budgets_s, effort.clock),
+        None => outcome_of_learning(one, &truth_w_m2, &budgets_s, effort.learn_s, effort.clock),
     });
     let outcomes = outcomes.collect();
 
@@ -236,12 +238,16 @@ fn outcome_of_slices(one: &Ready, slices: &Slices, truth_w_m2: &[f64], budgets_s
     }
 }
 
-fn outcome_of_learning(one: &Ready, truth_w_m2: &[f64], budgets_s: &[f64], clock: Clock) -> Outcome {
+fn outcome_of_learning(one: &Ready, truth_w_m2: &[f64], budgets_s: &[f64], longest_s: f64, clock: Clock) -> Outcome {
     let mut samples = samples_within(&one.run, SLICE_S, clock);
     let mut per_sample_s = SLICE_S / f64::from(samples);
     let (mut squares, mut is_doubtful) = (Vec::new(), vec![false; truth_w_m2.len()]);
     let mut seed = SEED;
     for &budget_s in budgets_s {
+        if budget_s > longest_s {
+            squares.push(vec![f64::NAN; truth_w_m2.len()]);
+            continue;
+        }
         // As often as the shortest budget asks for in all.
         let count = ((MOST_RUNS as f64 / budget_s) as usize).max(1);
         let mut runs = Vec::new();

@@ -27,6 +27,9 @@ pub fn print(found: &Finding) {
     for outcome in &found.outcomes {
         for (budget, budget_s) in found.budgets_s.iter().enumerate() {
             let ratios = ratios(found, outcome, budget);
+            if ratios.is_empty() {
+                continue;
+            }
             println!(
                 "  {:8} {:9.3} {budget_s:6} {:10.3} {:11.2} {:10.2} {:8}",
                 outcome.name,

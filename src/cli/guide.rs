@@ -7,7 +7,7 @@ use super::stages::Stages;
 use super::table::Table;
 use super::write::Folder;
 use crate::export::guide::{Guided, files};
-use crate::flow::network::Quality;
+use crate::guide::known::QUALITY;
 use crate::guide::{Guide, guide};
 use crate::job::{Cancel, Progress};
 use crate::light::Settings;
@@ -52,7 +52,7 @@ pub fn run(args: GuideArgs, cancel: &Cancel) -> Result<()> {
 
     let began = Instant::now();
     let (model, mut warnings) = prepare(&mut scene, &plan, &stages, cancel)?;
-    let seeded = guide(&model, &Quality::MEDIUM, &plan.settings, &stages, cancel)?;
+    let seeded = guide(&model, &QUALITY, &plan.settings, &stages, cancel)?;
     let seconds = began.elapsed().as_secs_f64();
     let found = &seeded.guide;
     // A guide needs no sensor, so a scene is not blamed for having none.

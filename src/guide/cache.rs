@@ -72,7 +72,7 @@ mod tests {
     use crate::flow::network::Quality;
     use crate::flow::sequence;
     use crate::flow::tests::{FLUX_W, lamp, modelled, room};
-    use crate::guide::places::at_walls;
+    use crate::guide::places::{at_walls, sent_by_ends};
     use crate::guide::shine::Shine;
     use crate::job::{Cancel, Quiet};
     use crate::light::Settings;
@@ -84,7 +84,7 @@ mod tests {
         let (_, model) = modelled(&room(), vec![lamp(Vec3::new(1.0, 0.5, 1.5), FLUX_W)], Vec::new());
         let (network, lines) = Network::new(&model, &Quality::FINE, &Settings::default(), &Quiet, &Cancel::new())
             .expect("nobody stops it");
-        let places = at_walls(&network, &Shine::new(&network), &lines);
+        let places = at_walls(&network, &lines, &sent_by_ends(&Shine::new(&network), &lines));
         let views = views(&network, &places, &lines, &vec![f64::from(PI); places.len()]);
         for (number, (place, view)) in places.iter().zip(&views).enumerate() {
             assert!((view.scalar_w_m2 / (2.0 * PI) - 1.0).abs() < 1e-5, "{view:?}");

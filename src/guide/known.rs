@@ -12,6 +12,10 @@ use crate::model::{Model, Probe};
 use glam::Vec3;
 use rayon::prelude::*;
 
+/// The network that a guide is made from: places half as far apart again as where irradiance is read guide as well, to within a
+/// fifth, for half the cost.
+pub const QUALITY: Quality = Quality { spacing: 0.55, lines: 16, ..Quality::MEDIUM };
+
 /// The light in a model, by place.
 pub struct Known<'a> {
     /// What measured it.
