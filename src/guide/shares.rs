@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Emitters that are solved side by side: their radiosities at a patch fill one line of the cache.
 const SIDE_BY_SIDE: usize = 16;
 
-/// Sweeps forwards and back. At reflectance 0.7 three leave shares within 2% of the exact ones.
+/// Sweeps forwards and back. At reflectance 0.5 three leave shares within 0.02 of the exact ones.
 const SWEEPS: usize = 3;
 
 /// The radiosities of a patch by some emitters.

@@ -180,8 +180,8 @@ fn the_files_are_what_the_document_says() {
     let emitters = model.sources.emitters.len();
     let (walls, nodes) = (guide.walls.len(), guide.nodes.len());
     let shapes = [
-        ("walls.npy", vec![walls, 12]),
-        ("nodes.npy", vec![nodes, 7]),
+        ("walls.npy", vec![walls, 13]),
+        ("nodes.npy", vec![nodes, 8]),
         ("walls_lobes.npy", vec![walls, 4, 6]),
         ("nodes_lobes.npy", vec![nodes, 4, 6]),
         ("walls_lights.npy", vec![walls, emitters, 2]),

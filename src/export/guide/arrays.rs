@@ -34,7 +34,7 @@ pub const LAYOUTS: [Layout; 7] = [
     Layout { file: "samples.npy", entries: "float32", axes: &["sample", "column"], columns: &SAMPLES },
 ];
 
-const WALLS: [Column; 12] = [
+const WALLS: [Column; 13] = [
     ("x", "m"),
     ("y", "m"),
     ("z", "m"),
@@ -47,9 +47,10 @@ const WALLS: [Column; 12] = [
     ("irradiance", "W/m2"),
     ("radius", "m"),
     ("reflectance", "1"),
+    ("trust", "1"),
 ];
 
-const NODES: [Column; 7] = [
+const NODES: [Column; 8] = [
     ("x", "m"),
     ("y", "m"),
     ("z", "m"),
@@ -57,6 +58,7 @@ const NODES: [Column; 7] = [
     ("cell", "number, -1: none"),
     ("scalar", "W/m2"),
     ("reflected", "W/m2"),
+    ("trust", "1"),
 ];
 
 const LOBES: [Column; 6] =
@@ -89,7 +91,8 @@ pub fn write_walls(out: &mut dyn Write, guided: &Guided) -> io::Result<()> {
         let [nx, ny, nz] = record.normal.as_dvec3().to_array();
         let light = [place.scalar_w_m2, record.reflected_w_m2, record.irradiance_w_m2, record.radius_m, reflectance];
         let [scalar, reflected, irradiance, radius, reflectance] = light.map(f64::from);
-        [x, y, z, nx, ny, nz, cell(place.cell) as f64, scalar, reflected, irradiance, radius, reflectance]
+        let trust = f64::from(place.incident.trust);
+        [x, y, z, nx, ny, nz, cell(place.cell) as f64, scalar, reflected, irradiance, radius, reflectance, trust]
     });
     write_rows(out, rows.collect())
 }
@@ -102,9 +105,10 @@ pub fn write_nodes(out: &mut dyn Write, guided: &Guided) -> io::Result<()> {
     let nodes = guided.model.skeleton.graph.node_weights();
     let rows = guided.guide.nodes.iter().zip(nodes).map(|(place, node)| {
         let [x, y, z] = guided.scene.to_user_m(node.position_m).to_array();
-        let light = [node.radius_m, place.scalar_w_m2, place.incident.reflected_w_m2];
-        let [radius, scalar, reflected] = light.map(f64::from);
-        [x, y, z, radius, cell(place.cell) as f64, scalar, reflected]
+        let Place { incident, scalar_w_m2, .. } = place;
+        let light = [node.radius_m, *scalar_w_m2, incident.reflected_w_m2, incident.trust];
+        let [radius, scalar, reflected, trust] = light.map(f64::from);
+        [x, y, z, radius, cell(place.cell) as f64, scalar, reflected, trust]
     });
     write_rows(out, rows.collect())
 }
