@@ -106,6 +106,9 @@ pub fn print_summary(findings: &[Finding]) {
         let cells = found.outcomes.iter().filter(|outcome| outcome.name != "plain").map(|outcome| {
             let ratios = (0..found.budgets_s.len()).map(|budget| {
                 let ratios = ratios(found, outcome, budget);
+                if ratios.is_empty() {
+                    return " |".to_owned();
+                }
                 format!(" {:.1} ({:.2}) |", median(&ratios), ratios.iter().copied().fold(f64::INFINITY, f64::min))
             });
             format!(" {:.2} s |{}", outcome.prepare_s, ratios.collect::<String>())
@@ -117,7 +120,8 @@ pub fn print_summary(findings: &[Finding]) {
 /// Time against error, a curve a contestant.
 pub fn panel(found: &Finding) -> Panel {
     let marks = found.outcomes.iter().flat_map(|outcome| {
-        found.budgets_s.iter().enumerate().map(move |(budget, budget_s)| Mark {
+        let measured = found.budgets_s.iter().enumerate().filter(|(budget, _)| rms(outcome, *budget).is_finite());
+        measured.map(move |(budget, budget_s)| Mark {
             series: outcome.name.to_owned(),
             label: String::new(),
             at: [*budget_s, 100.0 * rms(outcome, budget)],
