@@ -5,7 +5,7 @@
 //! it is known to bring there, and roulette ends paths by what they may still bring to the sensor (Vorba & Krivanek 2016).
 //!
 //! Right whatever the guide says, for every density is that of the mixture; how fast depends on the guide. So a few paths are
-//! traced both ways first, and where the guide does not help the plain tracer goes on alone ([`pilot`]).
+//! traced both ways first, and where the guide does not help the plain tracer goes on alone (`pilot`).
 
 mod mixture;
 mod path;
