@@ -43,7 +43,7 @@ impl<'a> Stage<'a> {
 /// All of them, `plain` first; those with guides that say nothing or lie only where they are asked for.
 pub fn contestants<'a>(stage: &'a Stage<'a>, with_wrong: bool) -> Vec<Contestant<'a>> {
     if with_wrong {
-        let misled = |lie: fn(&mut Incident)| move || misled(stage, lie);
+        let misled = |lie: fn(&mut Incident)| move || guided(stage, QUALITY, lie);
         return vec![
             Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
             Contestant {
@@ -58,8 +58,8 @@ pub fn contestants<'a>(stage: &'a Stage<'a>, with_wrong: bool) -> Vec<Contestant
     }
     vec![
         Contestant { name: "plain", prepare: Box::new(|| Ok(plain(stage))), learns: false },
-        Contestant { name: "guided", prepare: Box::new(|| guided(stage, QUALITY)), learns: false },
-        Contestant { name: "coarse", prepare: Box::new(|| guided(stage, Quality::COARSE)), learns: false },
+        Contestant { name: "guided", prepare: Box::new(|| guided(stage, QUALITY, |_| ())), learns: false },
+        Contestant { name: "coarse", prepare: Box::new(|| guided(stage, Quality::COARSE, |_| ())), learns: false },
         Contestant { name: "learned", prepare: Box::new(|| Ok(learning(stage))), learns: true },
     ]
 }
@@ -72,8 +72,8 @@ fn plain<'a>(stage: &'a Stage<'a>) -> Run<'a> {
 }
 
 /// Voxels, skeleton, the light at places and at the sensors; then paths that follow it. Voxels twice as large as the scene's guide
-/// as well and are made in a sixth of the time.
-fn guided<'a>(stage: &'a Stage<'a>, quality: Quality) -> Result<Run<'a>, Box<dyn Error>> {
+/// as well and are made in a sixth of the time. What is told of each place, `lie` may change.
+fn guided<'a>(stage: &'a Stage<'a>, quality: Quality, lie: fn(&mut Incident)) -> Result<Run<'a>, Box<dyn Error>> {
     let (quiet, cancel) = (&Quiet, &Cancel::new());
     let model = match stage.scene.model.voxel_m {
         Some(voxel_m) => Model::build(stage.scene, stage.rays.clone(), 2.0 * voxel_m, u64::MAX, quiet, cancel)?,
@@ -81,24 +81,7 @@ fn guided<'a>(stage: &'a Stage<'a>, quality: Quality) -> Result<Run<'a>, Box<dyn
     };
     // The guide borrows the model and both serve the runs: it lives as long as the program.
     let model: &Model = Box::leak(Box::new(model));
-    let known = known(model, &quality, &Settings::default(), quiet, cancel)?;
-    let at_sensors = known.at_probes(&model.probes_at_sensors(stage.scene), 0, cancel)?;
-    Ok(Box::new(move |seed, samples| {
-        let place_of = |at_m: Vec3, normal: Option<Vec3>| known.place_of(at_m, normal);
-        let guiding = known.guiding(&at_sensors, &place_of);
-        let settings = Settings { seed, samples, ..Settings::default() };
-        trace_guided(stage.scene, &stage.rays, &stage.sources, &guiding, &settings, &Quiet, &Cancel::new())
-            .expect("nobody cancels")
-    }))
-}
-
-/// By a guide that was made to lie at every place; what it took to make is not counted.
-fn misled<'a>(stage: &'a Stage<'a>, lie: fn(&mut Incident)) -> Result<Run<'a>, Box<dyn Error>> {
-    let (quiet, cancel) = (&Quiet, &Cancel::new());
-    let voxel_m = 2.0 * stage.scene.model.voxel_m.unwrap_or(0.1);
-    let model = Model::build(stage.scene, stage.rays.clone(), voxel_m, u64::MAX, quiet, cancel)?;
-    let model: &Model = Box::leak(Box::new(model));
-    let mut known = known(model, &QUALITY, &Settings::default(), quiet, cancel)?;
+    let mut known = known(model, &quality, &Settings::default(), quiet, cancel)?;
     let mut at_sensors = known.at_probes(&model.probes_at_sensors(stage.scene), 0, cancel)?;
     known.walls.iter_mut().chain(&mut known.zones).chain(&mut at_sensors).for_each(lie);
     Ok(Box::new(move |seed, samples| {
