@@ -121,7 +121,7 @@ fn a_guide_that_lies_does_not_bias() {
     // Below 512 samples no pilot stands in the way of the lie.
     for (runs, samples) in [(20, 480), (1, 8192)] {
         let scene = "scenes/two_rooms/two_rooms.toml";
-        agree(&format!("turned, {samples}"), &both(scene, runs, samples, turned), 3);
+        agree(&format!("turned, {samples}"), &both(scene, runs, samples, turned), 1);
         agree(&format!("boasting, {samples}"), &both(scene, runs, samples, boasting), 5);
         agree(&format!("modest, {samples}"), &both(scene, runs, samples, modest), 5);
         agree(&format!("silent, {samples}"), &both(scene, runs, samples, silent), 5);

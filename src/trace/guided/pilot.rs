@@ -2,7 +2,7 @@
 //!
 //! A few paths of either kind say which has the smaller variance for a ray, sensor by sensor; they are then thrown away, so that
 //! what was chosen by them has no bias. A sensor's own few samples say little, least where rare paths carry the light: the fewer
-//! they are, the more it follows the median of all sensors.
+//! they are, the more it follows all sensors together.
 
 use crate::light::Settings;
 use crate::trace::Sums;
@@ -23,6 +23,9 @@ const MOST_GAIN: f64 = std::f64::consts::LN_10;
 /// to 2.0 (`corridor`, whose few triangles make rays cheap).
 const GUIDED_RAY_COST: f64 = 1.5;
 
+/// Standard errors that two means differ by chance.
+const CHANCE: f64 = 2.0;
+
 /// Another stream of random numbers than that of the paths that count.
 const OTHER_SEED: u64 = 0x05ee_d0fa_9110;
 
@@ -34,29 +37,44 @@ pub(super) fn settings(settings: &Settings) -> Option<Settings> {
 
 /// For each sensor whether guided paths are worth more than plain ones.
 pub(super) fn helps(plain: &[Sums], guided: &[Sums]) -> Vec<bool> {
-    let gains: Vec<f64> = plain.iter().zip(guided).map(|(plain, guided)| gain(plain, guided)).collect();
-    let mut known: Vec<f64> = gains.iter().copied().filter(|gain| gain.is_finite()).collect();
-    known.sort_by(f64::total_cmp);
-    let of_all = known.get(known.len() / 2).copied().unwrap_or(0.0);
-    let alone = |(gain, sums): (&f64, &Sums)| {
-        let weight = if gain.is_finite() { sums.samples / (sums.samples + WORTH_THE_OTHERS) } else { 0.0 };
-        let own = if gain.is_finite() { gain.clamp(-MOST_GAIN, MOST_GAIN) } else { 0.0 };
+    let efforts: Vec<Option<[f64; 2]>> =
+        plain.iter().zip(guided).map(|(plain, guided)| efforts(plain, guided)).collect();
+    // The mean and not the median: the rare bright paths of a poor way show at few sensors only.
+    let lit = || efforts.iter().flatten();
+    let of_all = gain(&[0, 1].map(|way| lit().map(|efforts| efforts[way]).sum::<f64>()));
+    let alone = |(efforts, sums): (&Option<[f64; 2]>, &Sums)| {
+        let own = efforts.as_ref().map_or(0.0, gain).clamp(-MOST_GAIN, MOST_GAIN);
+        let weight = if efforts.is_some() { sums.samples / (sums.samples + WORTH_THE_OTHERS) } else { 0.0 };
         weight * own + (1.0 - weight) * of_all >= 0.0
     };
-    gains.iter().zip(guided).map(alone).collect()
+    efforts.iter().zip(guided).map(alone).collect()
 }
 
-/// The logarithm of how many times as long plain paths take for the same error; not finite where either found no light.
-fn gain(plain: &Sums, guided: &Sums) -> f64 {
-    let noise = |sums: &Sums| {
-        let mean = sums.value / sums.samples;
-        (sums.squares / sums.samples - mean * mean).max(0.0) * sums.rays
+/// What a given relative error costs by plain and by guided paths, in any unit; `None` where neither found light. A way whose mean
+/// is below the other's by more than chance has missed light that comes by paths rarer than one in its samples: it looks quiet,
+/// and is as noisy as if it had met one.
+fn efforts(plain: &Sums, guided: &Sums) -> Option<[f64; 2]> {
+    let mean = (plain.value + guided.value) / (plain.samples + guided.samples);
+    let moments = |sums: &Sums| {
+        let own = sums.value / sums.samples;
+        (own, (sums.squares / sums.samples - own * own).max(0.0))
     };
-    if plain.value > 0.0 && guided.value > 0.0 {
-        (noise(plain) / noise(guided) / GUIDED_RAY_COST).ln()
-    } else {
-        f64::NAN
-    }
+    let [(plain_mean, plain_variance), (guided_mean, guided_variance)] = [plain, guided].map(moments);
+    let by_chance = CHANCE * CHANCE * (plain_variance + guided_variance) / guided.samples;
+    let missed = |lacks: f64| (lacks.max(0.0).powi(2) - by_chance).max(0.0) * guided.samples;
+    let effort = |sums: &Sums, variance: f64, lacks: f64, cost: f64| {
+        (variance + missed(lacks)) / (mean * mean) * sums.rays / sums.samples * cost
+    };
+    let lacks = guided_mean - plain_mean;
+    let efforts =
+        || [effort(plain, plain_variance, lacks, 1.0), effort(guided, guided_variance, -lacks, GUIDED_RAY_COST)];
+    (mean > 0.0).then(efforts)
+}
+
+/// The logarithm of how many times as long plain paths take; 0 where neither costs anything.
+fn gain(&[plain, guided]: &[f64; 2]) -> f64 {
+    let gain = (plain / guided).ln();
+    if gain.is_nan() { 0.0 } else { gain.clamp(-1e3, 1e3) }
 }
 
 #[cfg(test)]
