@@ -23,6 +23,7 @@ pub mod panels;
 pub mod pick;
 pub mod request;
 pub mod results;
+pub mod shadows;
 pub mod shot;
 pub mod sides;
 pub mod stamp;
