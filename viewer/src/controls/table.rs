@@ -63,6 +63,7 @@ pub const KEYS: &[KeyRow] = &[
     layer(Key::B, Layer::Ball, "ball of the picked node"),
     layer(Key::T, Layer::Paths, "paths to the lights"),
     layer(Key::X, Layer::Cut, "cut below the ceiling"),
+    layer(Key::H, Layer::Shadows, "sunlight and shadows"),
     program(plain(Key::Space), Command::Play, "play the day, or stop it"),
     program(plain(Key::Escape), Command::Cancel, "stop the run, pick nothing"),
     program(sign(Key::Questionmark, false), Command::Help, "this sheet"),

@@ -285,7 +285,8 @@ fn exposure_is_drawn_where_it_belongs() {
     let what = What::Faces { data: corners, style: FaceStyle::Flat, culling: Culling::None };
     let exposed = Batch { tint, ..Batch::new(what) };
     let mut drawn = |batches: Vec<Batch>| {
-        let picture = Picture { camera: state.camera, background: [[0; 3]; 2], cuts: Vec::new(), batches };
+        let picture =
+            Picture { camera: state.camera, background: [[0; 3]; 2], sunlight: None, cuts: Vec::new(), batches };
         offscreen.render_picture(&picture, [320, 240]).expect("a picture")
     };
     let picture = drawn(vec![exposed.clone()]);

@@ -39,7 +39,7 @@ fn camera() -> Camera {
 }
 
 fn picture(batches: Vec<Batch>) -> Picture {
-    Picture { camera: camera(), background: [BACKGROUND; 2], cuts: Vec::new(), batches }
+    Picture { camera: camera(), background: [BACKGROUND; 2], sunlight: None, cuts: Vec::new(), batches }
 }
 
 /// An upright square wall through a point, its front to the south where the camera is.
