@@ -9,6 +9,31 @@
 //! Limits: opaque casters only, glazing casts nothing; a sun without extent (the softness of a filter is no penumbra); at most
 //! [`MOST_LAYERS`] layers.
 
+mod casters;
+mod maps;
+mod plan;
 mod settings;
+mod studio;
 
-pub use settings::{Classes, Filter, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings, Split};
+pub use casters::Casters;
+pub use maps::Maps;
+pub use plan::{Layer, LightMap, Plan, Seen};
+pub use settings::{Class, Classes, Filter, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings, Split};
+pub use studio::{Lit, Studio};
+
+use crate::camera::Camera;
+use glam::Vec3;
+
+/// A view under a sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From where.
+    pub camera: Camera,
+    /// Pixels.
+    pub size_px: [u32; 2],
+    /// Direction to the sun, of length one, in scene space.
+    pub towards_sun: Vec3,
+}
+
+#[cfg(test)]
+mod tests;
