@@ -2,12 +2,13 @@
 //!
 //! First pass: the background, the opaque batches, then the transparent ones, blended in the order given (within a batch
 //! in the order of its data: where several transparent faces lie behind one another their order may be wrong; culling to
-//! the void leaves mostly one). Second pass: what is on top, over everything, among itself hidden as usual.
+//! the void leaves mostly one). Before it, where the sun shines, shadow maps, in passes of their own. Second pass: what is on top, over everything, among itself hidden as usual.
 
 use eframe::wgpu::*;
 
 use super::picture::{Batch, Picture};
 use super::pipelines::{COLOURS, DEPTHS, Key, Pipelines, SAMPLES};
+use super::shade::Shade;
 use super::uniforms::{BATCH_STRIDE, BatchUniform, SkyUniform, ViewUniform, colour_maps};
 use super::upload::Uploads;
 
@@ -19,6 +20,8 @@ pub struct Canvas {
     sky: Buffer,
     view_group: BindGroup,
     batches: Batches,
+    /// Made when the first shadows are asked for.
+    shade: Option<Shade>,
     target: Option<Target>,
     drawn: Option<Picture>,
     redraws: usize,
@@ -64,7 +67,7 @@ impl Canvas {
         });
         let batches = Batches::new(device, &pipelines.batch_layout, 1);
         let uploads = Uploads::default();
-        Self { pipelines, uploads, view, sky, view_group, batches, target: None, drawn: None, redraws: 0 }
+        Self { pipelines, uploads, view, sky, view_group, batches, shade: None, target: None, drawn: None, redraws: 0 }
     }
 
     /// Draws a picture with this many pixels, unless it is the one drawn last. Uploads only data that are new.
@@ -108,12 +111,21 @@ impl Canvas {
         self.uploads.count
     }
 
+    /// Times that shadow maps were drawn so far.
+    pub fn shadow_redraws(&self) -> usize {
+        self.shade.as_ref().map_or(0, |shade| shade.redraws)
+    }
+
     /// Brings to the GPU what the picture needs.
     fn prepare(&mut self, device: &Device, queue: &Queue, size_px: [u32; 2], picture: &Picture) {
         self.uploads.update(device, picture.batches.iter().map(|batch| &batch.what));
-        self.pipelines.make(device, Key::background(picture));
+        if picture.has_shadows() {
+            self.shade.get_or_insert_with(|| Shade::new(device)).draw(device, queue, size_px, picture);
+        }
+        let shadows = self.shade.as_ref().map(Shade::layout);
+        self.pipelines.make(device, Key::background(picture), shadows);
         for batch in &picture.batches {
-            self.pipelines.make(device, Key::new(batch, picture));
+            self.pipelines.make(device, Key::new(batch, picture), shadows);
         }
 
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(picture, size_px)));
@@ -165,6 +177,9 @@ impl Canvas {
             let Some(pipeline) = self.pipelines.get(key) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.batches.group, &[(number * BATCH_STRIDE) as u32]);
+            if let Some(shade) = self.shade.as_ref().filter(|_| key.is_sunlit()) {
+                pass.set_bind_group(2, shade.group(), &[]);
+            }
             for part in self.uploads.parts(&batch.what) {
                 pass.set_vertex_buffer(0, part.vertices.slice(..));
                 match self.uploads.rectangles().filter(|_| key.rectangles()) {

@@ -9,6 +9,7 @@ mod canvas;
 mod offscreen;
 mod picture;
 mod pipelines;
+mod shade;
 mod sunlight;
 #[cfg(test)]
 mod tests;

@@ -14,9 +14,6 @@ pub(super) const COLOURS: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Reversed depth wants a float.
 pub(super) const DEPTHS: TextureFormat = TextureFormat::Depth32Float;
 
-/// The sun's share where nothing casts a shadow.
-const OPEN: &str = "fn sun_share(position_m: vec3<f32>, normal: vec3<f32>, depth_m: f32) -> f32 { return 1.0; }\n";
-
 /// The closed set of shapes that have shaders of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Shape {
@@ -34,12 +31,13 @@ impl Shape {
     /// Name and stem of the entry points, and the sources after `view.wgsl`.
     fn shader(self) -> (&'static str, &'static [&'static str]) {
         const SKYLIGHT: &str = include_str!("shaders/skylight.wgsl");
+        const LOOKUP: &str = include_str!("../shadows/shaders/lookup.wgsl");
         const FACES: &str = include_str!("shaders/faces.wgsl");
         match self {
             Shape::Background => ("background", &[include_str!("shaders/background.wgsl")]),
             Shape::Sky => ("sky", &[SKYLIGHT, include_str!("shaders/sky.wgsl")]),
             Shape::Faces => ("faces", &[FACES]),
-            Shape::Sunlit => ("sunlit", &[FACES, SKYLIGHT, OPEN, include_str!("shaders/sunlit.wgsl")]),
+            Shape::Sunlit => ("sunlit", &[FACES, SKYLIGHT, LOOKUP, include_str!("shaders/sunlit.wgsl")]),
             Shape::Edges => ("edges", &[FACES]),
             Shape::Balls => ("balls", &[include_str!("shaders/balls.wgsl")]),
             Shape::Cubes => ("cubes", &[include_str!("shaders/cubes.wgsl")]),
@@ -101,6 +99,11 @@ impl Key {
         Self { shape, scaled, cut: batch.cut && !picture.cuts.is_empty(), blended: batch.opacity < 1.0 }
     }
 
+    /// Whether its shader looks shadows up.
+    pub(super) fn is_sunlit(self) -> bool {
+        self.shape == Shape::Sunlit
+    }
+
     /// Whether it draws indexed rectangles.
     pub(super) fn rectangles(self) -> bool {
         matches!(self.shape, Shape::Balls | Shape::Cubes | Shape::Strokes)
@@ -111,7 +114,6 @@ impl Key {
 pub(super) struct Pipelines {
     pub(super) view_layout: BindGroupLayout,
     pub(super) batch_layout: BindGroupLayout,
-    layout: PipelineLayout,
     made: HashMap<Key, RenderPipeline>,
 }
 
@@ -138,20 +140,22 @@ impl Pipelines {
         };
         let view_layout = group("view", &[uniform(0, false), maps, uniform(2, false)]);
         let batch_layout = group("batch", &[uniform(0, true)]);
-        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some("picture"),
-            bind_group_layouts: &[Some(&view_layout), Some(&batch_layout)],
-            immediate_size: 0,
-        });
-        Self { view_layout, batch_layout, layout, made: HashMap::new() }
+        Self { view_layout, batch_layout, made: HashMap::new() }
     }
 
-    /// Makes a pipeline unless it is there.
-    pub(super) fn make(&mut self, device: &Device, key: Key) {
-        if !self.made.contains_key(&key) {
-            let pipeline = pipeline(device, &self.layout, key);
-            self.made.insert(key, pipeline);
+    /// Makes a pipeline unless it is there. A sunlit one reads maps of the layout `shadows`, and is not made without.
+    pub(super) fn make(&mut self, device: &Device, key: Key, shadows: Option<&BindGroupLayout>) {
+        let shadows = shadows.filter(|_| key.is_sunlit());
+        if self.made.contains_key(&key) || shadows.is_some() != key.is_sunlit() {
+            return;
         }
+        let groups: Vec<_> = [&self.view_layout, &self.batch_layout].into_iter().chain(shadows).map(Some).collect();
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("picture"),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        self.made.insert(key, pipeline(device, &layout, key));
     }
 
     /// A pipeline that was made.

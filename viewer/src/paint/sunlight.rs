@@ -35,6 +35,13 @@ pub struct SkyLight {
     pub white_kcd_m2: f32,
 }
 
+impl SkyLight {
+    /// Whether any of the sun's own light arrives.
+    pub fn is_up(&self) -> bool {
+        self.towards_sun.z > 0.0 && self.beam_klx.iter().any(|klx| *klx > 0.0)
+    }
+}
+
 /// What casts shadows, and how they are found.
 #[derive(Clone, Debug)]
 pub struct Shadows {

@@ -5,8 +5,8 @@ struct Vertex {
     @location(0) across: vec2<f32>,
 }
 
-// The horizon is as wide as this, in sines of the elevation: a line would flicker while the camera turns.
-const HORIZON: f32 = 0.002;
+// How fast the ground clears up below the horizon, from the colour of the sky there: to half within 2 degrees.
+const CLEARING: f32 = 20.0;
 
 @vertex
 fn sky_vertex(@builtin(vertex_index) index: u32) -> Vertex {
@@ -27,6 +27,9 @@ fn sky_fragment(in: Vertex) -> @location(0) vec4<f32> {
     let in_disc = clamp((disc_rad - from_middle_rad) / px_rad + 0.5, 0.0, 1.0);
     rgb += in_disc * skylight.beam.rgb / (3.14159265 * disc_rad * disc_rad);
 
-    let above = smoothstep(-HORIZON, HORIZON, direction.z);
-    return vec4<f32>(mix(toned(skylight.ground.rgb), toned(rgb), above), 1.0);
+    // Towards the horizon the ground fades into the air before it.
+    let horizon = normalize(vec3<f32>(direction.xy, 1e-4));
+    let haze = exp(CLEARING * min(direction.z, 0.0));
+    let ground = mix(skylight.ground.rgb, sky_colour(horizon), haze);
+    return vec4<f32>(toned(select(ground, rgb, direction.z > 0.0)), 1.0);
 }

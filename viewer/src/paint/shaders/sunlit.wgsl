@@ -21,7 +21,7 @@ fn sunlit_fragment(in: Sunlit) -> @location(0) vec4<f32> {
     let normal = select(-in.normal, in.normal, dot(in.normal, to_eye(in.position_m)) > 0.0);
     var light_klx = sky_light(normal);
     let facing = dot(normal, skylight.towards_sun.xyz);
-    if facing > 0.0 && skylight.beam.g > 0.0 {
+    if facing > 0.0 && any(skylight.beam.rgb > vec3<f32>(0.0)) {
         light_klx += skylight.beam.rgb * facing * sun_share(in.position_m, normal, depth_m(in.position_m));
     }
     let rgb = decoded(in.colour.rgb) * light_klx / 3.14159265;

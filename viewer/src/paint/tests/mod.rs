@@ -1,6 +1,7 @@
 //! What is seen: pictures of known scenes, pixel by pixel.
 
 mod shown;
+mod sunlit;
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 
