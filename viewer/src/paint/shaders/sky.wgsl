@@ -5,8 +5,8 @@ struct Vertex {
     @location(0) across: vec2<f32>,
 }
 
-// How fast the ground clears up below the horizon, from the colour of the sky there: to half within 2 degrees.
-const CLEARING: f32 = 20.0;
+// How fast the ground clears up below the horizon, from the colour of the sky there: to half within 0.7 degrees.
+const CLEARING: f32 = 60.0;
 
 @vertex
 fn sky_vertex(@builtin(vertex_index) index: u32) -> Vertex {

@@ -1,20 +1,17 @@
 //! Sun, sky and shadow in the window: switched, moved by the time, and met by a facade that is touched.
 
-use super::{Window, click, opened, place, scene, settle};
+use super::{Window, click, opened, place, settle};
 use crate::shot::can_draw;
-use clap::Parser;
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use glam::{Vec2, Vec3};
-use image::RgbaImage;
+use jiff::civil::date;
 use lightvein::sky::facade::{ShadowAngles, shadow_angles};
-use lightvein_viewer::args::Args;
-use lightvein_viewer::camera::{Camera, Standard};
+use lightvein_viewer::camera::Standard;
 use lightvein_viewer::draw::Drawer;
-use lightvein_viewer::layers::MeshColour;
+use lightvein_viewer::layers::{MeshColour, Shadow};
 use lightvein_viewer::paint::{Offscreen, Picture};
 use lightvein_viewer::shadows::Method;
-use lightvein_viewer::shot::picture;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -96,38 +93,39 @@ fn sunlight_is_switched_by_its_key_and_follows_the_time() {
     assert!(drawn(&mut window).sunlight.is_none());
 }
 
-/// A picture of the courtyard from above, on 21 December.
-fn winter(time: &str, layers: &str) -> RgbaImage {
-    let scene = scene(COURTYARD).display().to_string();
-    let args =
-        ["lightvein-viewer", &scene, "--view-only", "--size", "400x400", "--camera", "top", "--date", "2026-12-21"];
-    let args = args.into_iter().chain(["--time", time, "--layer", layers]);
-    let args = Args::try_parse_from(args).expect("arguments");
-    picture(&args, &mut Offscreen::new().expect("an adapter")).expect("a picture")
-}
-
 #[test]
-fn at_noon_the_shadow_of_a_block_lies_to_the_north_of_it_by_every_method() {
+fn the_shadow_of_a_block_lies_away_from_the_sun_by_every_method() {
     if !can_draw() {
         return;
     }
-    let bounds_m = (Vec3::new(-100.0, -100.0, -0.5), Vec3::new(100.0, 100.0, 10.0));
-    let mut camera = Camera::fitted(bounds_m, 1.0);
-    camera.look_from(Standard::Top);
-    camera.fit(bounds_m, 1.0);
-    let at = |image: &RgbaImage, at_m: Vec3| {
-        let (px, _) = camera.project(at_m, Vec2::splat(400.0)).expect("a place in view");
-        i32::from(image.get_pixel(px.x as u32, px.y as u32).0[0])
+    let mut window = opened(COURTYARD);
+    let state = &mut window.state_mut().state;
+    (state.layers.sensors, state.layers.sun_path) = (false, false);
+    state.camera.look_from(Standard::Top);
+    state.outdoors.date = date(2025, 12, 21);
+    let mut offscreen = Offscreen::new().expect("an adapter");
+    let mut drawer = Drawer::default();
+    let mut shown = |window: &mut Window, time_h: f64, method: Method| {
+        let state = &mut window.state_mut().state;
+        (state.outdoors.time_h, state.layers.shadow) = (time_h, Shadow::by(method));
+        state.layers.light_by_sun(true);
+        window.run();
+        let state = &mut window.state_mut().state;
+        let picture = drawer.draw(state, Vec2::splat(400.0), true, &(Arc::new(|| ()) as _)).picture;
+        let image = offscreen.render_picture(&picture, [400, 400]).expect("an image");
+        move |x: f32, y: f32| {
+            let (px, _) = picture.camera.project(Vec3::new(x, y, 0.0), Vec2::splat(400.0)).expect("a place in view");
+            i32::from(image.get_pixel(px.x as u32, px.y as u32).0[0])
+        }
     };
-    // The sun is 25 degrees high: 10 m of block cast 22 m of shadow.
-    let [north_m, south_m, beyond_m] = [25.0, -25.0, 60.0].map(|y| Vec3::new(0.0, y, 0.0));
     for method in Method::ALL {
-        let noon = winter("12:00", &format!("-sun,-sensors,-ball,shadows={}", method.name()));
-        let [north, south, beyond] = [north_m, south_m, beyond_m].map(|at_m| at(&noon, at_m));
+        // The sun is 25 degrees high: 10 m of block cast 22 m of shadow.
+        let noon = shown(&mut window, 12.0, method);
+        let [north, south, beyond] = [25.0, -25.0, 60.0].map(|y| noon(0.0, y));
         assert!(north + 40 < south && (beyond - south).abs() < 4, "{}: {north} {south} {beyond}", method.name());
     }
     // In the morning it lies to the north-west.
-    let morning = winter("09:00", "-sun,-sensors,shadows");
-    let [west, east] = [-24.0, 24.0].map(|x| at(&morning, Vec3::new(x, 20.0, 0.0)));
+    let morning = shown(&mut window, 9.0, Method::Hsm);
+    let [west, east] = [morning(-24.0, 20.0), morning(24.0, 20.0)];
     assert!(west + 30 < east, "{west} {east}");
 }
