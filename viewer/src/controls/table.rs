@@ -104,6 +104,6 @@ pub const TOUCHES: &[TouchRow] = &[
     blender(TouchRow { shift: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Pan, "move aside") }),
     blender(TouchRow { ctrl: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Zoom, "nearer or farther") }),
     touch(Touch::Wheel, Gesture::Zoom, "nearer or farther, to the pointer"),
-    touch(Touch::Click(PointerButton::Primary), Gesture::Pick, "pick a node, a sensor, a light or a part"),
+    touch(Touch::Click(PointerButton::Primary), Gesture::Pick, "pick a node, a sensor, a light, a part or a wall"),
     touch(Touch::DoubleClick(PointerButton::Primary), Gesture::Focus, "look at what lies there"),
 ];

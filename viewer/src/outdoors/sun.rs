@@ -24,7 +24,7 @@ pub const DOME: [usize; 2] = [72, 18];
 const WHITE_SHARE: f64 = 0.8;
 
 /// ... unless the sky is dimmer than this, kcd/m2, some minutes before sunrise: twilight and night are to look dark.
-const LEAST_WHITE: f64 = 0.7;
+pub(super) const LEAST_WHITE: f64 = 0.7;
 
 /// What depends on the date.
 #[derive(Debug, Clone, PartialEq)]

@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
 }
 
 /// A switch, and its options in rows below while it is on.
-fn layer(ui: &mut Ui, on: &mut bool, name: &str, says: &str, options: impl FnOnce(&mut Ui)) {
+pub(super) fn layer(ui: &mut Ui, on: &mut bool, name: &str, says: &str, options: impl FnOnce(&mut Ui)) {
     ui.checkbox(on, name).on_hover_text(says);
     if *on {
         indented(ui, |ui| rows(ui, name, options));

@@ -42,6 +42,8 @@ fn the_sky_behind_the_scene_is_the_librarys_in_every_pixel() {
     for (at, north_deg) in [(sun(150.0, 40.0), 0.0), (sun(250.0, 5.0), 30.0), (sun(300.0, -4.0), -70.0)] {
         let (sky, light) = skylight(at, north_deg);
         let to_sun = light.towards_sun.as_dvec3();
+        let dimmed = f64::from(light.zenith[0]) * sky.at_zenith[0] / sky.zenith[0];
+        assert!((0.1..1.0).contains(&dimmed), "{dimmed}");
         let mut shown = picture(Vec::new());
         shown.sunlight = Some(Sunlight { light, shadows: None });
         for (azimuth_rad, elevation_rad) in [(-1.6, -0.3), (1.0, -0.9), (3.0, 0.4)] {
@@ -56,13 +58,18 @@ fn the_sky_behind_the_scene_is_the_librarys_in_every_pixel() {
                     continue;
                 }
                 let rgb = match view.z {
-                    up if up > 0.0 => sky.rgb(up, view.dot(to_sun)),
+                    // As bright as the light has it.
+                    up if up > 0.0 => sky.rgb(up, view.dot(to_sun)).map(|value| dimmed * value),
                     // So deep down nothing of the horizon's air is left.
                     down if down < -0.4 => light.ground_kcd_m2.map(f64::from),
                     _ => continue,
                 };
                 let [red, green, blue, _] = image.get_pixel(x, y).0;
-                alike([red, green, blue], tone_mapped(rgb, WHITE_KCD_M2), &format!("{at:?} towards {view}"));
+                alike(
+                    [red, green, blue],
+                    tone_mapped(rgb, f64::from(light.white_kcd_m2)),
+                    &format!("{at:?} towards {view}"),
+                );
             }
         }
     }
@@ -137,7 +144,7 @@ fn a_shadow_falls_away_from_the_sun_and_the_rest_is_lit_by_both() {
                     let beam = f64::from(light.beam_klx[colour]) * f64::from(light.towards_sun.z) * share;
                     grey * (sky_klx[colour] + beam) / std::f64::consts::PI
                 };
-                tone_mapped([lit(0), lit(1), lit(2)], WHITE_KCD_M2)
+                tone_mapped([lit(0), lit(1), lit(2)], f64::from(light.white_kcd_m2))
             };
             let seen = |at_m| super::at(&image, &shown.camera, at_m);
             let in_sun = seen(-shadow_m * 1.4);

@@ -28,7 +28,11 @@ const LISTED: usize = 50;
 /// Shows what is picked.
 pub fn show(ui: &mut Ui, state: &mut State) {
     if state.picked.is_none() && state.facade.is_none() {
-        return super::nothing(ui, state, "Click a node, a sensor, a light or a part in the view.");
+        return super::nothing(
+            ui,
+            state,
+            "Click a node, a sensor, a light or a part in the view; outdoors a wall, for the sun on it.",
+        );
     }
     egui::ScrollArea::both().id_salt("inspector").auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);

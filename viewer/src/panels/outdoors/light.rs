@@ -1,7 +1,8 @@
 //! The light of sun and sky on the scene: on or off, and how shadows are found.
 
 use crate::layers::{Layers, Shadow};
-use crate::panels::{choice, row, rows};
+use crate::panels::layers::layer;
+use crate::panels::{choice, row};
 use crate::shadows::{MOST_LAYERS, Method};
 use egui::{Slider, Ui};
 
@@ -9,11 +10,9 @@ use egui::{Slider, Ui};
 pub fn show(ui: &mut Ui, layers: &mut Layers) {
     let mut is_on = layers.shadows;
     let says = "The sky behind the scene, and the mesh in the light of sun and sky at the shown moment";
-    if ui.checkbox(&mut is_on, "Sunlight and shadows").on_hover_text(says).changed() {
+    layer(ui, &mut is_on, "Sunlight and shadows", says, |ui| method(ui, &mut layers.shadow));
+    if is_on != layers.shadows {
         layers.light_by_sun(is_on);
-    }
-    if layers.shadows {
-        rows(ui, "shadows", |ui| method(ui, &mut layers.shadow));
     }
 }
 
