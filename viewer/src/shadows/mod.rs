@@ -9,6 +9,31 @@
 //! Limits: opaque casters only, glazing casts nothing; a sun without extent (the softness of a filter is no penumbra); at most
 //! [`MOST_LAYERS`] layers.
 
+pub mod errors;
 mod settings;
+pub mod truth;
 
 pub use settings::{Classes, Filter, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings, Split};
+
+use crate::camera::Camera;
+use glam::Vec3;
+
+/// A view under a sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From where.
+    pub camera: Camera,
+    /// Width and height of the picture.
+    pub size_px: [u32; 2],
+    /// Of length one, in the scene's space.
+    pub towards_sun: Vec3,
+}
+
+/// What a frame shows at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lit {
+    /// Share of the sun that the maps let through, 0 to 1; not asked of surfaces that face away.
+    pub share: f32,
+    /// Along the gaze, metres.
+    pub depth_m: f32,
+}
