@@ -105,6 +105,22 @@ impl Offscreen {
         wait(device)
     }
 
+    /// Waits until all that was submitted is done.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub fn wait(&self) -> Result<()> {
+        wait(&self.state.device)
+    }
+
+    /// The bytes of a texture that can be copied from, rows from the top without gaps.
+    ///
+    /// # Errors
+    /// When the adapter is lost.
+    pub fn read_bytes(&self, texture: &Texture) -> Result<Vec<u8>> {
+        read_bytes(&self.state, texture)
+    }
+
     /// A picture as an image.
     ///
     /// # Errors
@@ -213,11 +229,18 @@ fn wait(device: &Device) -> Result<()> {
     Ok(())
 }
 
-/// Reads a texture of four bytes a pixel.
+/// Reads a texture of four bytes a pixel as an image.
 fn read(state: &RenderState, texture: &Texture) -> Result<RgbaImage> {
+    let pixels = read_bytes(state, texture)?;
+    RgbaImage::from_raw(texture.width(), texture.height(), pixels).context("the image read is too short")
+}
+
+/// Reads a texture.
+fn read_bytes(state: &RenderState, texture: &Texture) -> Result<Vec<u8>> {
     let RenderState { device, queue, .. } = state;
     let (width, height) = (texture.width(), texture.height());
-    let row_bytes = 4 * width as usize;
+    let pixel_bytes = texture.format().block_copy_size(None).context("the texture has no pixels to read")?;
+    let row_bytes = (pixel_bytes * width) as usize;
     let padded_bytes = row_bytes.next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT as usize);
     let buffer = device.create_buffer(&BufferDescriptor {
         label: Some("image"),
@@ -239,6 +262,5 @@ fn read(state: &RenderState, texture: &Texture) -> Result<RgbaImage> {
     wait(device)?;
     receiver.recv()??;
     let mapped = buffer.get_mapped_range(..)?;
-    let pixels: Vec<u8> = mapped.chunks(padded_bytes).flat_map(|row| &row[..row_bytes]).copied().collect();
-    RgbaImage::from_raw(width, height, pixels).context("the image read is too short")
+    Ok(mapped.chunks(padded_bytes).flat_map(|row| &row[..row_bytes]).copied().collect())
 }

@@ -9,11 +9,19 @@
 //! Limits: opaque casters only, glazing casts nothing; a sun without extent (the softness of a filter is no penumbra); at most
 //! [`MOST_LAYERS`] layers.
 
+mod casters;
 pub mod errors;
+mod maps;
+mod plan;
 mod settings;
+mod studio;
 pub mod truth;
 
-pub use settings::{Classes, Filter, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings, Split};
+pub use casters::Casters;
+pub use maps::Maps;
+pub use plan::{Layer, LightMap, Plan, Seen};
+pub use settings::{Class, Classes, Filter, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings, Split};
+pub use studio::{Lit, Studio};
 
 use crate::camera::Camera;
 use glam::Vec3;
@@ -23,17 +31,11 @@ use glam::Vec3;
 pub struct View {
     /// From where.
     pub camera: Camera,
-    /// Width and height of the picture.
+    /// Pixels.
     pub size_px: [u32; 2],
-    /// Of length one, in the scene's space.
+    /// Direction to the sun, of length one, in scene space.
     pub towards_sun: Vec3,
 }
 
-/// What a frame shows at a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lit {
-    /// Share of the sun that the maps let through, 0 to 1; not asked of surfaces that face away.
-    pub share: f32,
-    /// Along the gaze, metres.
-    pub depth_m: f32,
-}
+#[cfg(test)]
+mod tests;

@@ -24,9 +24,9 @@ pub struct Settings {
     pub resolution: u32,
     /// Gaussian blur of the moments, 5 x 5 texels.
     pub blurred: bool,
-    /// How far a receiver is lifted off its surface, in texels of its map: too little and surfaces shade themselves (acne), too
-    /// much and shadows come off their feet (peter-panning).
-    pub lift_texels: f32,
+    /// How far a receiver is lifted off its surface, in shares of what its filter needs ([`Filter::reach_texels`]): less and
+    /// surfaces shade themselves (acne), more and shadows come off their feet (peter-panning).
+    pub lift: f32,
 }
 
 /// How a map answers whether a point lies in the sun.
@@ -167,14 +167,65 @@ impl Method {
             overlap: if is_hybrid { Overlap::Medium } else { Overlap::Own },
             resolution: resolution.clamp(*RESOLUTIONS.start(), *RESOLUTIONS.end()),
             blurred: matches!(filter, Filter::Variance | Filter::Hybrid),
-            lift_texels: Settings::DEFAULT_LIFT_TEXELS,
+            lift: 1.0,
         }
     }
 }
 
-impl Settings {
-    /// Half the diagonal of the widest filter's footprint, 4 x 4 texels, less what a comparison rounds off.
-    pub const DEFAULT_LIFT_TEXELS: f32 = 2.0;
+impl Filter {
+    /// How far from a point the texels lie whose depths it is compared with. A tilted plane's own depths differ by so much, times
+    /// the tangent of its angle to the sun.
+    pub const fn reach_texels(self, class: Class) -> f32 {
+        match (self, class) {
+            // Half a texel's diagonal.
+            (Self::Compare, _) => std::f32::consts::FRAC_1_SQRT_2,
+            // Two texels; those in the corners, farther off, weigh 1/36 at most.
+            (Self::Pcf, _) | (Self::Hybrid, Class::A) => 2.0,
+            // A tilt is a variance, which Chebyshev's bound knows of.
+            (Self::Variance, _) | (Self::Hybrid, _) => std::f32::consts::FRAC_1_SQRT_2,
+        }
+    }
+
+    /// Whether layers of a class are compared with; else they are moments.
+    pub const fn compares(self, class: Class) -> bool {
+        match self {
+            Self::Compare | Self::Pcf => true,
+            Self::Variance => false,
+            Self::Hybrid => matches!(class, Class::A),
+        }
+    }
+}
+
+/// How fine a layer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// All texels, numbers of 32 bits.
+    A,
+    /// Half the texels a side, numbers of 16 bits.
+    B,
+    /// A quarter of the texels a side, numbers of 16 bits.
+    C,
+}
+
+impl Class {
+    /// Texels a side where class A has so many.
+    pub const fn resolution(self, of_a: u32) -> u32 {
+        let fewer = match self {
+            Self::A => of_a,
+            Self::B => of_a / 2,
+            Self::C => of_a / 4,
+        };
+        if fewer == 0 { 1 } else { fewer }
+    }
+
+    /// As tables name it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::A => "A",
+            Self::B => "B",
+            Self::C => "C",
+        }
+    }
 }
 
 impl Split {

@@ -1,0 +1,154 @@
+//! Shadows of boxes on the ground, pixel by pixel, against rays; and where the methods fail.
+
+mod scenes;
+
+use super::*;
+use crate::paint::{NoAdapter, Offscreen};
+use scenes::{Town, Wrong, wrong};
+use std::sync::{Mutex, MutexGuard, OnceLock};
+
+/// The adapter, one for all tests; none (and why) where there is none and none is demanded.
+fn offscreen() -> Option<MutexGuard<'static, Offscreen>> {
+    static OFFSCREEN: OnceLock<Result<Mutex<Offscreen>, NoAdapter>> = OnceLock::new();
+    match OFFSCREEN.get_or_init(|| Offscreen::new().map(Mutex::new)) {
+        Ok(offscreen) => Some(offscreen.lock().unwrap_or_else(|poisoned| poisoned.into_inner())),
+        Err(error) if std::env::var_os("LIGHTVEIN_NEED_GPU").is_some() => panic!("{error}"),
+        Err(error) => {
+            println!("skipped: {error}");
+            None
+        }
+    }
+}
+
+/// What rays find wrong of a method's frame.
+fn errors(offscreen: &Offscreen, town: &Town, settings: &Settings) -> Wrong {
+    let mut studio = Studio::new(offscreen, &town.corners_m());
+    studio.frame(&town.view, settings).unwrap();
+    wrong(town, &studio.lit().unwrap())
+}
+
+#[test]
+fn all_methods_put_the_shadow_where_rays_do() {
+    let Some(offscreen) = offscreen() else { return };
+    let town = Town::block_on_ground();
+    for method in Method::ALL {
+        for layers in [1, 3] {
+            let found = errors(&offscreen, &town, &method.settings(1024, layers));
+            assert!(
+                found.share < 0.002 && found.bleeding < 0.005 && found.acne < 0.002,
+                "{method:?} {layers} {found:?}"
+            );
+        }
+    }
+}
+
+/// A roof over a screen over the ground: the ground's moments mix three depths.
+#[test]
+fn light_bleeds_through_three_occluders_with_variance_and_less_in_layers() {
+    let Some(offscreen) = offscreen() else { return };
+    let town = Town::three_occluders();
+    let bleeding = |method: Method, layers| errors(&offscreen, &town, &method.settings(512, layers)).bleeding;
+    let [plain, pcf, vsm] = [Method::Plain, Method::Pcf, Method::Vsm].map(|method| bleeding(method, 1));
+    let [lvsm_4, lvsm_12] = [4, 12].map(|layers| bleeding(Method::Lvsm, layers));
+    assert!(plain < 1e-3 && pcf < 1e-3, "{plain} {pcf}");
+    assert!(vsm > 0.02, "this test is to see light bleed: {vsm}");
+    assert!(lvsm_4 < 0.8 * vsm && lvsm_12 < 0.5 * vsm, "{vsm} {lvsm_4} {lvsm_12}");
+    // In class A hybrid maps are compared with: what is near has no bleeding.
+    let near = Settings { classes: Classes::One, ..Method::Hsm.settings(512, 4) };
+    assert!(errors(&offscreen, &town, &near).bleeding < 1e-3);
+}
+
+#[test]
+fn too_little_lift_is_acne_and_too_much_is_peter_panning() {
+    let Some(offscreen) = offscreen() else { return };
+    let town = Town::block_on_ground();
+    for method in [Method::Plain, Method::Pcf, Method::Csm, Method::Hsm] {
+        let at = |lift| errors(&offscreen, &town, &Settings { lift, ..method.settings(512, 3) });
+        let [none, own, much] = [0.0, 1.0, 40.0].map(at);
+        assert!(none.acne > 0.05 && own.acne < 0.005, "{method:?} {none:?} {own:?}");
+        assert!(much.share > 3.0 * own.share, "{method:?} {own:?} {much:?}");
+    }
+}
+
+#[test]
+fn no_seam_shows_between_layers() {
+    let Some(offscreen) = offscreen() else { return };
+    let town = Town::long_wall();
+    for method in [Method::Lvsm, Method::Csm, Method::Hsm, Method::HsmLight] {
+        let mut studio = Studio::new(&offscreen, &town.corners_m());
+        studio.frame(&town.view, &method.settings(1024, 5)).unwrap();
+        let lit = studio.lit().unwrap();
+        let seams: Vec<f32> = studio.maps().plan().layers.iter().skip(1).map(|layer| layer.from_m).collect();
+        assert_eq!(seams.len(), 4);
+        let found = wrong(&town, &lit);
+        // Deep in light and deep in shadow the layers agree, wherever they meet.
+        assert!(found.bleeding < 0.02 && found.acne < 0.005, "{method:?} {found:?}");
+    }
+}
+
+#[test]
+fn low_and_high_suns_are_survived() {
+    let Some(offscreen) = offscreen() else { return };
+    for (towards_sun, most) in [
+        // Two degrees above the horizon, and the zenith.
+        (glam::Vec3::new(-2.0_f32.to_radians().cos(), 0.0, 2.0_f32.to_radians().sin()), 0.03),
+        (glam::Vec3::Z, 0.005),
+    ] {
+        let mut town = Town::block_on_ground();
+        town.view.towards_sun = towards_sun;
+        for method in Method::ALL {
+            let found = errors(&offscreen, &town, &method.settings(1024, 4));
+            assert!(found.share < most, "{method:?} {towards_sun} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn inside_an_arcade_the_sun_falls_between_the_columns() {
+    let Some(offscreen) = offscreen() else { return };
+    let town = Town::arcade();
+    for method in Method::ALL {
+        let found = errors(&offscreen, &town, &method.settings(1024, 4));
+        assert!(found.share < 0.02, "{method:?} {found:?}");
+    }
+}
+
+#[test]
+fn nothing_seen_and_nothing_in_the_way_are_no_trouble() {
+    let Some(offscreen) = offscreen() else { return };
+    let mut away = Town::block_on_ground();
+    away.view.camera.elevation_rad = -1.2;
+    away.view.camera.target_m.z = 300.0;
+    let mut bare = Town::block_on_ground();
+    bare.boxes_m.truncate(1);
+    for method in Method::ALL {
+        let settings = method.settings(256, 4);
+        let mut studio = Studio::new(&offscreen, &away.corners_m());
+        studio.frame(&away.view, &settings).unwrap();
+        assert!(studio.lit().unwrap().iter().all(Option::is_none));
+        let found = errors(&offscreen, &bare, &settings);
+        assert!(found.share == 0.0 && found.acne < 1e-3, "{method:?} {found:?}");
+        let mut studio = Studio::new(&offscreen, &[]);
+        studio.frame(&bare.view, &settings).unwrap();
+        assert!(studio.lit().unwrap().iter().all(Option::is_none));
+    }
+}
+
+#[test]
+fn layers_of_lower_classes_take_less_memory_and_methods_without_layers_one_map() {
+    let Some(offscreen) = offscreen() else { return };
+    let town = Town::long_wall();
+    let bytes = |settings: Settings| {
+        let mut studio = Studio::new(&offscreen, &town.corners_m());
+        studio.frame(&town.view, &settings).unwrap();
+        studio.maps().bytes()
+    };
+    let mib = |settings| bytes(settings) as f64 / f64::from(1 << 20);
+    assert_eq!(mib(Method::Plain.settings(1024, 9)), 4.0);
+    assert_eq!(mib(Method::Csm.settings(1024, 3)), 12.0);
+    // Depth, moments, and what lies between rows and columns.
+    assert_eq!(mib(Method::Vsm.settings(1024, 1)), 4.0 + 8.0 + 8.0);
+    assert_eq!(mib(Method::Lvsm.settings(1024, 4)), 4.0 + 4.0 * 8.0 + 8.0);
+    let hsm = Method::Hsm.settings(1024, 5);
+    assert!(mib(hsm) < 0.7 * mib(Settings { classes: Classes::One, ..hsm }));
+}
