@@ -33,9 +33,27 @@ pub struct Errors {
     pub acne: Option<f64>,
 }
 
-/// The errors of what a method shows, in the order of the truth's pixels; `None` where no pixel counts.
-pub fn errors(truth: &Truth, lit: &[Option<Lit>]) -> Option<Errors> {
-    let [in_shadow, in_light] = truth.inside();
+/// Tells errors by one truth.
+#[derive(Clone, Debug)]
+pub struct Judge<'a> {
+    truth: &'a Truth,
+    /// Pixels well inside shadows, and as deep in the light.
+    inside: [Vec<bool>; 2],
+}
+
+impl<'a> Judge<'a> {
+    /// By this truth.
+    pub fn new(truth: &'a Truth) -> Self {
+        Self { truth, inside: truth.inside() }
+    }
+
+    /// The errors of what a method shows, in the order of the truth's pixels; `None` where no pixel counts.
+    pub fn errors(&self, lit: &[Option<Lit>]) -> Option<Errors> {
+        errors(self.truth, &self.inside, lit)
+    }
+}
+
+fn errors(truth: &Truth, [in_shadow, in_light]: &[Vec<bool>; 2], lit: &[Option<Lit>]) -> Option<Errors> {
     let mut sums = Sums::default();
     let asked = truth.pixels.iter().enumerate().filter_map(|(at, seen)| {
         let seen = (*seen)?;
@@ -49,10 +67,10 @@ pub fn errors(truth: &Truth, lit: &[Option<Lit>]) -> Option<Errors> {
         };
         sums.add(sun, share(shown, sun));
         let is = |mask: &[bool]| mask.get(at).copied().unwrap_or(false);
-        if is(&in_shadow) {
+        if is(in_shadow) {
             sums.bleeding.add(share(shown, sun));
         }
-        if is(&in_light) {
+        if is(in_light) {
             sums.acne.add(1.0 - share(shown, sun));
         }
     }
@@ -134,7 +152,7 @@ mod tests {
 
     #[test]
     fn the_truth_has_no_error() {
-        let found = errors(&halves(), &shown(|x| if x < 10 { 0.0 } else { 1.0 })).unwrap();
+        let found = Judge::new(&halves()).errors(&shown(|x| if x < 10 { 0.0 } else { 1.0 })).unwrap();
         let want = Errors {
             counted: 200,
             left_out: 0,
@@ -150,7 +168,7 @@ mod tests {
     #[test]
     fn a_shifted_edge_is_neither_bleeding_nor_acne() {
         // Two of twenty columns are lit that should not be.
-        let found = errors(&halves(), &shown(|x| if x < 8 { 0.0 } else { 1.0 })).unwrap();
+        let found = Judge::new(&halves()).errors(&shown(|x| if x < 8 { 0.0 } else { 1.0 })).unwrap();
         assert!((found.wrong - 0.1).abs() < 1e-12 && (found.hard - 0.1).abs() < 1e-12, "{found:?}");
         assert_eq!((found.bleeding, found.acne), (Some(0.0), Some(0.0)));
     }
@@ -158,7 +176,7 @@ mod tests {
     #[test]
     fn bleeding_and_acne_are_apart() {
         // Well inside are columns 3 to 6 and 13 to 16; a third of the light there, and a quarter missing here.
-        let found = errors(&halves(), &shown(|x| if x < 10 { 1.0 / 3.0 } else { 0.75 })).unwrap();
+        let found = Judge::new(&halves()).errors(&shown(|x| if x < 10 { 1.0 / 3.0 } else { 0.75 })).unwrap();
         assert!((found.bleeding.unwrap() - 1.0 / 3.0).abs() < 1e-7 && (found.acne.unwrap() - 0.25).abs() < 1e-7);
         assert!((found.hard - (1.0 / 3.0 + 0.25) / 2.0).abs() < 1e-7 && found.wrong == 0.0);
     }
@@ -169,7 +187,7 @@ mod tests {
         for seen in truth.pixels.iter_mut().flatten() {
             seen.sun = seen.sun.map(|sun| Reached { disc: 0.5, ..sun });
         }
-        let found = errors(&truth, &shown(|_| 0.5)).unwrap();
+        let found = Judge::new(&truth).errors(&shown(|_| 0.5)).unwrap();
         assert_eq!((found.disc, found.hard, found.wrong), (0.0, 0.5, 0.0));
         assert_eq!((found.bleeding, found.acne), (None, None), "half a shadow is not inside one");
     }
@@ -182,14 +200,14 @@ mod tests {
         let mut truth = halves();
         truth.pixels[2] = None;
         truth.pixels[3] = Some(Seen { depth_m: 10.0, cosine: -1.0, sun: None });
-        let found = errors(&truth, &lit).unwrap();
+        let found = Judge::new(&truth).errors(&lit).unwrap();
         assert_eq!((found.counted, found.left_out, found.wrong), (196, 2, 0.0));
-        assert_eq!(errors(&truth, &[]), None);
+        assert_eq!(Judge::new(&truth).errors(&[]), None);
     }
 
     #[test]
     fn what_is_no_number_is_wrong() {
-        let found = errors(&halves(), &shown(|_| f32::NAN)).unwrap();
+        let found = Judge::new(&halves()).errors(&shown(|_| f32::NAN)).unwrap();
         assert_eq!((found.wrong, found.hard, found.bleeding), (1.0, 1.0, Some(1.0)));
     }
 }
