@@ -24,9 +24,12 @@ pub struct Settings {
     pub resolution: u32,
     /// Gaussian blur of the moments, 5 x 5 texels.
     pub blurred: bool,
-    /// How far a receiver is lifted off its surface, in shares of what its filter needs ([`Filter::reach_texels`]): less and
-    /// surfaces shade themselves (acne), more and shadows come off their feet (peter-panning).
-    pub lift: f32,
+    /// How far a receiver is lifted off its surface, in texels of its map: too little and surfaces shade themselves (acne), too
+    /// much and shadows come off their feet (peter-panning).
+    pub lift_texels: f32,
+    /// Whether texels are compared with the depth that the receiver's plane has at each (Isidoro 2006), not with the receiver's
+    /// own: it needs little lift then.
+    pub follows_planes: bool,
 }
 
 /// How a map answers whether a point lies in the sun.
@@ -167,25 +170,18 @@ impl Method {
             overlap: if is_hybrid { Overlap::Medium } else { Overlap::Own },
             resolution: resolution.clamp(*RESOLUTIONS.start(), *RESOLUTIONS.end()),
             blurred: matches!(filter, Filter::Variance | Filter::Hybrid),
-            lift: 1.0,
+            lift_texels: Settings::DEFAULT_LIFT_TEXELS,
+            follows_planes: true,
         }
     }
 }
 
-impl Filter {
-    /// How far from a point the texels lie whose depths it is compared with. A tilted plane's own depths differ by so much, times
-    /// the tangent of its angle to the sun.
-    pub const fn reach_texels(self, class: Class) -> f32 {
-        match (self, class) {
-            // Half a texel's diagonal.
-            (Self::Compare, _) => std::f32::consts::FRAC_1_SQRT_2,
-            // Two texels; those in the corners, farther off, weigh 1/36 at most.
-            (Self::Pcf, _) | (Self::Hybrid, Class::A) => 2.0,
-            // A tilt is a variance, which Chebyshev's bound knows of.
-            (Self::Variance, _) | (Self::Hybrid, _) => std::f32::consts::FRAC_1_SQRT_2,
-        }
-    }
+impl Settings {
+    /// What a plane that is followed, or a variance that knows of a tilt, leaves to rounding and to edges.
+    pub const DEFAULT_LIFT_TEXELS: f32 = 0.25;
+}
 
+impl Filter {
     /// Whether layers of a class are compared with; else they are moments.
     pub const fn compares(self, class: Class) -> bool {
         match self {

@@ -40,11 +40,11 @@ impl ShadowNumbers {
         let blends = u32::from(settings.overlap == Overlap::Medium);
         let texels = if settings.filter == Filter::Compare { 1 } else { 4 };
         numbers.towards = view.towards_sun.extend(by_light_m).to_array();
-        numbers.mode = [plan.layers.len().min(MOST_LAYERS) as u32, blends, texels, 0];
+        numbers.mode = [plan.layers.len().min(MOST_LAYERS) as u32, blends, texels, u32::from(settings.follows_planes)];
         for (number, (slot, layer)) in numbers.layers.iter_mut().zip(&plan.layers).enumerate() {
             let [scale, shift] = warp(layer);
             let place = if settings.split.has_map_each() || !layer.compares { place(&plan.layers, number) } else { 0 };
-            let lift_m = settings.lift * settings.filter.reach_texels(layer.class) * layer.texel_m();
+            let lift_m = settings.lift_texels * layer.texel_m();
             *slot = LayerNumbers {
                 clip_from_scene: layer.map.clip_from_scene.to_cols_array_2d(),
                 bounds_m: [layer.from_m, layer.to_m, layer.until_m, layer.texel_m()],

@@ -17,7 +17,7 @@ pub(super) struct Passes {
     source_layout: BindGroupLayout,
     /// Rows and columns in the numbers of class A, and of the others.
     moments: [[RenderPipeline; 2]; 2],
-    nearer: Sampler,
+    texels: Sampler,
 }
 
 impl Passes {
@@ -32,7 +32,7 @@ impl Passes {
             moments(array),
             moments(array),
             moments(array),
-            BindingType::Sampler(SamplerBindingType::Comparison),
+            BindingType::Sampler(SamplerBindingType::NonFiltering),
         ];
         let lookup_layout = group_layout(device, "shadows", ShaderStages::FRAGMENT, &looked_up);
 
@@ -46,13 +46,9 @@ impl Passes {
         let step = |entry, format| moments_pipeline(device, &layout, &shader, entry, format);
         let moments = [ROWS, format(Class::B)]
             .map(|format| ["rows_fragment", "columns_fragment"].map(|entry| step(entry, format)));
-        let nearer = device.create_sampler(&SamplerDescriptor {
-            label: Some("nearer"),
-            compare: Some(CompareFunction::LessEqual),
-            ..Default::default()
-        });
+        let texels = device.create_sampler(&SamplerDescriptor { label: Some("texels"), ..Default::default() });
         let from_sun = depth_pipeline(device, &told_layout, CompareFunction::Less);
-        Self { from_sun, clips, clip_group, makings, making_group, lookup_layout, source_layout, moments, nearer }
+        Self { from_sun, clips, clip_group, makings, making_group, lookup_layout, source_layout, moments, texels }
     }
 
     /// Rows in 32 bits, and rows and columns in a class's own numbers.
@@ -77,7 +73,7 @@ impl Passes {
             BindingResource::TextureView(&a.all),
             BindingResource::TextureView(&b.all),
             BindingResource::TextureView(&c.all),
-            BindingResource::Sampler(&self.nearer),
+            BindingResource::Sampler(&self.texels),
         ];
         group(device, "shadows", &self.lookup_layout, &resources)
     }

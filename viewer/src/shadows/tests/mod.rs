@@ -51,8 +51,8 @@ fn light_bleeds_through_three_occluders_with_variance_and_less_in_layers() {
     let [plain, pcf, vsm] = [Method::Plain, Method::Pcf, Method::Vsm].map(|method| bleeding(method, 1));
     let [lvsm_4, lvsm_12] = [4, 12].map(|layers| bleeding(Method::Lvsm, layers));
     assert!(plain < 1e-3 && pcf < 1e-3, "{plain} {pcf}");
-    assert!(vsm > 0.02, "this test is to see light bleed: {vsm}");
-    assert!(lvsm_4 < 0.8 * vsm && lvsm_12 < 0.5 * vsm, "{vsm} {lvsm_4} {lvsm_12}");
+    assert!(vsm > 0.01, "this test is to see light bleed: {vsm}");
+    assert!(lvsm_4 < 0.2 * vsm && lvsm_12 < 0.05 * vsm, "{vsm} {lvsm_4} {lvsm_12}");
     // In class A hybrid maps are compared with: what is near has no bleeding.
     let near = Settings { classes: Classes::One, ..Method::Hsm.settings(512, 4) };
     assert!(errors(&offscreen, &town, &near).bleeding < 1e-3);
@@ -63,26 +63,39 @@ fn too_little_lift_is_acne_and_too_much_is_peter_panning() {
     let Some(offscreen) = offscreen() else { return };
     let town = Town::block_on_ground();
     for method in [Method::Plain, Method::Pcf, Method::Csm, Method::Hsm] {
-        let at = |lift| errors(&offscreen, &town, &Settings { lift, ..method.settings(512, 3) });
-        let [none, own, much] = [0.0, 1.0, 40.0].map(at);
+        let own = method.settings(512, 3);
+        let at = |settings| errors(&offscreen, &town, &settings);
+        let none = at(Settings { lift_texels: 0.0, follows_planes: false, ..own });
+        let much = at(Settings { lift_texels: 40.0, ..own });
+        let own = at(own);
         assert!(none.acne > 0.05 && own.acne < 0.005, "{method:?} {none:?} {own:?}");
         assert!(much.share > 3.0 * own.share, "{method:?} {own:?} {much:?}");
     }
 }
 
 #[test]
-fn no_seam_shows_between_layers() {
+fn no_seam_shows_between_layers_over_the_cameras_depth() {
     let Some(offscreen) = offscreen() else { return };
     let town = Town::long_wall();
-    for method in [Method::Lvsm, Method::Csm, Method::Hsm, Method::HsmLight] {
+    let width = town.view.size_px[0] as usize;
+    let truth = town.truth();
+    for method in [Method::Csm, Method::Hsm] {
         let mut studio = Studio::new(&offscreen, &town.corners_m());
         studio.frame(&town.view, &method.settings(1024, 5)).unwrap();
         let lit = studio.lit().unwrap();
-        let seams: Vec<f32> = studio.maps().plan().layers.iter().skip(1).map(|layer| layer.from_m).collect();
-        assert_eq!(seams.len(), 4);
-        let found = wrong(&town, &lit);
-        // Deep in light and deep in shadow the layers agree, wherever they meet.
-        assert!(found.bleeding < 0.02 && found.acne < 0.005, "{method:?} {found:?}");
+        let seams_m: Vec<f32> = studio.maps().plan().layers.iter().skip(1).map(|layer| layer.from_m).collect();
+        assert_eq!(seams_m.len(), 4);
+
+        // Neighbours, one on each side of a seam, of which rays say the same.
+        let mut pairs = [0; 2];
+        for (at, upper) in lit.iter().enumerate().take(lit.len() - width) {
+            let (Some(upper), Some(lower)) = (upper, lit[at + width]) else { continue };
+            let is_seam = seams_m.iter().any(|seam_m| (lower.depth_m..upper.depth_m).contains(seam_m));
+            if is_seam && truth[at].is_some() && truth[at] == truth[at + width] {
+                pairs[usize::from((upper.share - lower.share).abs() > 0.1)] += 1;
+            }
+        }
+        assert!(pairs[0] > 500 && pairs[1] * 50 < pairs[0], "{method:?}: {pairs:?}");
     }
 }
 
@@ -104,12 +117,16 @@ fn low_and_high_suns_are_survived() {
 }
 
 #[test]
-fn inside_an_arcade_the_sun_falls_between_the_columns() {
+fn inside_an_arcade_maps_over_the_cameras_depth_see_the_sun_between_the_columns() {
     let Some(offscreen) = offscreen() else { return };
     let town = Town::arcade();
-    for method in Method::ALL {
-        let found = errors(&offscreen, &town, &method.settings(1024, 4));
-        assert!(found.share < 0.02, "{method:?} {found:?}");
+    let found = |method: Method| errors(&offscreen, &town, &method.settings(1024, 4)).share;
+    for method in [Method::Csm, Method::Hsm] {
+        assert!(found(method) < 0.005, "{method:?} {}", found(method));
+    }
+    // One map for the columns at hand and the end of the street has texels as wide as these are.
+    for method in [Method::Plain, Method::Pcf, Method::Vsm, Method::Lvsm] {
+        assert!((0.01..0.05).contains(&found(method)), "{method:?} {}", found(method));
     }
 }
 
