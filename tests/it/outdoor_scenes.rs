@@ -26,11 +26,12 @@ fn outdoor_table(name: &str, file: &str) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Name, triangles, sensors, and how many sensors that do not look down have something straight above them.
-const OUTDOOR: [(&str, usize, usize, std::ops::RangeInclusive<usize>); 4] = [
+const OUTDOOR: [(&str, usize, usize, std::ops::RangeInclusive<usize>); 5] = [
     ("courtyard", 172, 38, 0..=0),
     ("blocks", 4164, 400, 0..=0),
     ("arcades", 4824, 400, 90..=300),
     ("office", 2120, 55, 40..=55),
+    ("street", 9136, 100, 1..=30),
 ];
 
 #[test]

@@ -5,7 +5,8 @@ use crate::controls::Layer;
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Shadow, Slice, VoxelShow};
 use crate::outdoors::QUANTITIES;
 use crate::shadows;
-use clap::Parser;
+use crate::shadows::command::ShadowArgs;
+use clap::{Parser, Subcommand};
 use glam::{DVec3, Vec3};
 use jiff::civil::{Date, Time};
 use lightvein::daylight::Quantity;
@@ -14,8 +15,12 @@ use std::path::PathBuf;
 
 /// Shows what Lightvein finds in a scene: voxels, skeleton, flux, sun and exposure.
 #[derive(Debug, Clone, Parser)]
-#[command(version, about)]
+#[command(version, about, args_conflicts_with_subcommands = true)]
 pub struct Args {
+    /// What is done instead of showing a scene.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+
     /// Scene file (TOML) or mesh (OBJ, glTF, PLY, STL); without one a scene of its own greets.
     pub scene: Option<PathBuf>,
 
@@ -64,6 +69,13 @@ pub struct Args {
     /// The theme: dark or light; as the system has it without.
     #[arg(long, value_name = "THEME", value_parser = theme)]
     pub theme: Option<Theme>,
+}
+
+/// What the program does without a window, besides pictures of it.
+#[derive(Debug, Clone, Subcommand)]
+pub enum Command {
+    /// Measures shadow methods on a view of a scene under its sun.
+    Shadows(ShadowArgs),
 }
 
 /// A theme.
@@ -158,7 +170,8 @@ impl Viewpoint {
     }
 }
 
-fn size(text: &str) -> Result<[u32; 2], String> {
+/// Width and height, pixels.
+pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
     let parsed = text.split_once(['x', 'X']).and_then(|(wide, high)| Some([wide.parse().ok()?, high.parse().ok()?]));
     let is_picture = |size: &[u32; 2]| size.iter().all(|side| (64..=8192).contains(side));
     parsed
@@ -261,7 +274,8 @@ pub(crate) fn point(text: &str) -> Option<DVec3> {
     <[f64; 3]>::try_from(numbers).ok().map(DVec3::from_array).filter(|at_m| at_m.is_finite())
 }
 
-fn viewpoint(text: &str) -> Result<Viewpoint, String> {
+/// A direction by its name, or eye and target.
+pub(crate) fn viewpoint(text: &str) -> Result<Viewpoint, String> {
     let all = [
         ("front", Standard::Front),
         ("right", Standard::Right),

@@ -3,15 +3,27 @@
 use anyhow::{Result, anyhow};
 use clap::Parser;
 use eframe::{NativeOptions, Renderer};
+use lightvein::job::{Cancel, Cancelled};
 use lightvein_viewer::app::App;
-use lightvein_viewer::args::Args;
+use lightvein_viewer::args::{Args, Command};
+use lightvein_viewer::shadows::command;
 use lightvein_viewer::shot;
 use std::process::ExitCode;
+
+/// Raised by Ctrl-C and by a polite kill while a command runs.
+static CANCEL: Cancel = Cancel::new();
+
+/// Exit code of a command that was interrupted: 128 + SIGINT, as shells have it.
+const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
     let args = Args::parse();
     match run(args) {
         Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<Cancelled>() => {
+            eprintln!("interrupted; nothing was written");
+            ExitCode::from(INTERRUPTED)
+        }
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::FAILURE
@@ -20,6 +32,10 @@ fn main() -> ExitCode {
 }
 
 fn run(args: Args) -> Result<()> {
+    if let Some(Command::Shadows(args)) = &args.command {
+        listen_to_ctrl_c();
+        return command::run(args, &CANCEL);
+    }
     if let Some(to) = args.screenshot.clone() {
         return shot::run(&args, &to);
     }
@@ -40,4 +56,17 @@ fn run(args: Args) -> Result<()> {
              in software); `lightvein-viewer SCENE --screenshot FILE` needs no display, and `lightvein analyse SCENE` neither"
         )
     })
+}
+
+/// The first Ctrl-C asks the command to stop, the second ends the program.
+fn listen_to_ctrl_c() {
+    let second_time_ends_it = || {
+        if CANCEL.is_cancelled() {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        CANCEL.cancel();
+    };
+    if let Err(error) = ctrlc::set_handler(second_time_ends_it) {
+        eprintln!("warning: Ctrl-C will end the program at once: {error}");
+    }
 }

@@ -13,6 +13,7 @@ mod office;
 mod open_air;
 mod scatter;
 mod solids;
+mod street;
 
 use std::path::Path;
 use std::{fs, io};
@@ -37,8 +38,8 @@ pub struct Outdoor {
 }
 
 /// All scenes under the sky.
-pub fn scenes() -> Result<[Outdoor; 4], String> {
-    Ok([courtyard::courtyard(), blocks::blocks()?, arcades::arcades()?, office::office()])
+pub fn scenes() -> Result<[Outdoor; 5], String> {
+    Ok([courtyard::courtyard(), blocks::blocks()?, arcades::arcades()?, office::office(), street::street()?])
 }
 
 /// A mesh with its sensors.

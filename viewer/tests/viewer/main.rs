@@ -7,6 +7,7 @@ mod outdoors;
 mod panels;
 mod scene;
 mod sensors;
+mod shadows;
 mod shot;
 mod snapshots;
 mod worker;
