@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long)]
     pub view_only: bool,
 
-    /// What is picked: `sensor:ID`, `node:N` or `light:N`.
+    /// What is picked: `sensor:ID`, `node:N`, `light:N`, or `wall:X,Y,Z`, the face that the camera sees towards that point, metres.
     #[arg(long, value_name = "WHAT")]
     pub pick: Option<String>,
 
@@ -268,6 +268,12 @@ fn unknown(text: &str) -> String {
     )
 }
 
+/// A point as `x,y,z`.
+pub(crate) fn point(text: &str) -> Option<DVec3> {
+    let numbers: Vec<f64> = text.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
+    <[f64; 3]>::try_from(numbers).ok().map(DVec3::from_array).filter(|at_m| at_m.is_finite())
+}
+
 /// A direction by its name, or eye and target.
 pub(crate) fn viewpoint(text: &str) -> Result<Viewpoint, String> {
     let all = [
@@ -282,10 +288,6 @@ pub(crate) fn viewpoint(text: &str) -> Result<Viewpoint, String> {
     if let Some((_, standard)) = all.iter().find(|(name, _)| *name == text) {
         return Ok(Viewpoint::Standard(*standard));
     }
-    let point = |text: &str| -> Option<DVec3> {
-        let numbers: Vec<f64> = text.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
-        <[f64; 3]>::try_from(numbers).ok().map(DVec3::from_array).filter(|at_m| at_m.is_finite())
-    };
     let between = text.split_once(':').and_then(|(from, to)| Some((point(from)?, point(to)?)));
     match between {
         Some((from_m, to_m)) if from_m == to_m => Err(format!("{text:?}: the eye lies in what it looks at")),

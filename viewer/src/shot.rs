@@ -1,13 +1,16 @@
 //! A picture of the window without a window: the whole program runs offscreen until all is computed and drawn.
 
 use crate::app::{App, Start, write_png};
-use crate::args::{Args, Theme};
+use crate::args::{Args, Theme, point};
 use crate::draw::bounds_m;
 use crate::log::Level;
+use crate::outdoors::facade::Facade;
 use crate::outdoors::shown::dome_bounds_m;
 use crate::paint::Offscreen;
 use crate::state::{Kept, Picked, State};
+use crate::view::facade_at;
 use anyhow::{Context, Result, bail};
+use glam::Vec2;
 use image::RgbaImage;
 use petgraph::graph::NodeIndex;
 use std::path::Path;
@@ -94,16 +97,30 @@ pub fn arrange(state: &mut State, args: &Args) -> Result<()> {
         state.camera = viewpoint.camera(origin_m, bounds_m, aspect);
     }
     if let Some(what) = &args.pick {
-        let picked = picked(state, what)?;
-        state.pick(Some(picked));
+        match what.strip_prefix("wall:") {
+            Some(towards) => state.facade = Some(wall(state, args, towards)?),
+            None => state.pick(Some(picked(state, what)?)),
+        }
     }
     Ok(())
 }
 
+/// The face that the camera sees towards a point of the user's.
+fn wall(state: &State, args: &Args, towards: &str) -> Result<Facade> {
+    let what = format!("--pick wall:{towards}");
+    let towards_m = point(towards).with_context(|| format!("{what}: a point is meant, as wall:x,y,z in metres"))?;
+    let scene = state.results.scene.as_ref().context("there is no scene")?;
+    let size_px = Vec2::new(args.size[0] as f32, args.size[1] as f32);
+    let seen = state.camera.project((towards_m - scene.origin_m).as_vec3(), size_px);
+    let facade = seen.and_then(|(at_px, _)| facade_at(state, at_px, size_px));
+    facade.with_context(|| format!("{what}: the camera sees no face of the mesh there, or the scene has no sun"))
+}
+
 /// What is meant by `sensor:ID`, `node:N` or `light:N`.
 fn picked(state: &State, what: &str) -> Result<Picked> {
-    let (kind, name) =
-        what.split_once(':').with_context(|| format!("--pick {what}: sensor:ID, node:N or light:N is meant"))?;
+    let (kind, name) = what
+        .split_once(':')
+        .with_context(|| format!("--pick {what}: sensor:ID, node:N, light:N or wall:X,Y,Z is meant"))?;
     let number = || name.parse::<usize>().with_context(|| format!("--pick {what}: {name:?} is not a number"));
     let scene = state.results.scene.as_ref().context("there is no scene")?;
     Ok(match kind {
@@ -126,6 +143,6 @@ fn picked(state: &State, what: &str) -> Result<Picked> {
             }
             Picked::Node(NodeIndex::new(number))
         }
-        _ => bail!("--pick {what}: sensor:ID, node:N or light:N is meant"),
+        _ => bail!("--pick {what}: sensor:ID, node:N, light:N or wall:X,Y,Z is meant"),
     })
 }

@@ -24,7 +24,7 @@ const NIGHT_KLX: [f64; 3] = [0.10, 0.11, 0.15];
 const LEAST_ELEVATION_RAD: f64 = 3.0 * PI / 180.0;
 
 /// What level ground of this reflectance sends back shows at 63% of the screen's brightest, unless the sky is brighter yet.
-const MIDDLE: f64 = 0.5;
+const MIDDLE: f64 = 1.0 / 3.0;
 
 /// The light of a site's sun and sky at a moment. `sky_white_kcd_m2` is the luminance that shows at 63% in a picture of the
 /// sky alone. About 0.4 ms.
@@ -123,9 +123,9 @@ mod tests {
         // A ceiling has the ground's light alone, a quarter of what the ground gets; within the harmonics' error.
         let below_klx = aside_klx(&noon, DVec3::NEG_Z);
         assert!((below_klx / both_klx - 0.25).abs() < 0.03, "{below_klx}");
-        // Lit ground of a quarter shows at half of 63%'s luminance.
+        // Ground of a third is the middle, ground of a quarter three quarters of it.
         let ground = luminance(noon.ground_kcd_m2.map(f64::from));
-        assert!((ground / f64::from(noon.white_kcd_m2) - 0.5).abs() < 0.01, "{ground} {}", noon.white_kcd_m2);
+        assert!((ground / f64::from(noon.white_kcd_m2) - 0.75).abs() < 0.01, "{ground} {}", noon.white_kcd_m2);
     }
 
     #[test]

@@ -217,8 +217,9 @@ fn picked_at(state: &State, at_px: Vec2, size_px: Vec2, parts: bool) -> Option<P
     thing.or_else(|| part().filter(|_| parts && state.layers.mesh))
 }
 
-/// The face of the mesh under the pointer, of a scene under a sun, where nothing else is picked but the part that it is of.
-fn facade_at(state: &State, at_px: Vec2, size_px: Vec2) -> Option<Facade> {
+/// The face of the mesh under the pointer, of a scene under a sun, where nothing else is picked but
+/// the part that it is of.
+pub fn facade_at(state: &State, at_px: Vec2, size_px: Vec2) -> Option<Facade> {
     let is_mesh = state.layers.mesh && matches!(state.picked, None | Some(Picked::Part(_)));
     state.outdoors.now.as_ref().filter(|_| is_mesh)?;
     let hidden = |at_m, triangle, direction| is_hidden(state, at_m, triangle, direction);

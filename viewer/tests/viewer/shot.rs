@@ -51,7 +51,7 @@ fn what_is_wrong_is_told_in_a_line_and_no_file_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let to = folder.path().join("none.png");
     let two_rooms = scene("two_rooms");
-    let cases: [(&Path, &[&str], &str); 9] = [
+    let cases: [(&Path, &[&str], &str); 11] = [
         (&two_rooms, &["--layer", "nods"], "\"nods\" is no layer"),
         (&two_rooms, &["--camera", "above"], "\"above\" is no camera"),
         (&two_rooms, &["--size", "10x10"], "\"10x10\" is not a size"),
@@ -60,7 +60,9 @@ fn what_is_wrong_is_told_in_a_line_and_no_file_is_written() {
         (Path::new("nowhere.toml"), &[], "nowhere.toml"),
         (&two_rooms, &["--voxel", "0.2", "--pick", "sensor:nobody"], "no sensor has that id"),
         (&two_rooms, &["--voxel", "0.2", "--pick", "node:999999"], "nodes, numbered from 0"),
-        (&two_rooms, &["--voxel", "0.2", "--pick", "door"], "sensor:ID, node:N or light:N is meant"),
+        (&two_rooms, &["--voxel", "0.2", "--pick", "wall:1,2"], "a point is meant"),
+        (&two_rooms, &["--voxel", "0.2", "--pick", "wall:1,1,1"], "the scene has no sun"),
+        (&two_rooms, &["--voxel", "0.2", "--pick", "door"], "sensor:ID, node:N, light:N or wall:X,Y,Z is meant"),
     ];
     for (place, (scene, args, told)) in cases.into_iter().enumerate() {
         // What is typed is looked at before there is anything to draw with.
