@@ -111,11 +111,7 @@ fn house(solids: &mut Solids, dice: &mut Dice, frame: &Frame, [from_m, to_m]: [f
         solids.roofed(frame, [from_m, front_m, over_m], [to_m, back_m, eaves_m], roof);
         // Its ends lie within the house above, and in no plane of a neighbour.
         let inside = [from_m + 0.06, to_m - 0.03];
-        solids.block(
-            frame,
-            [inside[0], front_m + 3.0, -FOOT_M],
-            [inside[1], back_m - 0.04, over_m + JOINT_M],
-        );
+        solids.block(frame, [inside[0], front_m + 3.0, -FOOT_M], [inside[1], back_m - 0.04, over_m + JOINT_M]);
         let bays = ((to_m - from_m) / 4.0).floor();
         for column in 0..=bays as usize {
             let along_m = from_m + 0.5 + (to_m - from_m - 1.0) * column as f64 / bays;
