@@ -22,7 +22,7 @@ use summary::{Summary, largest_hybrids, summary};
 const FRAMES: [usize; 2] = [5, 100];
 
 /// A row that takes longer than this ends with fewer: frames so slow vary little.
-const SLOW: Duration = Duration::from_millis(1000);
+const SLOW: Duration = Duration::from_millis(600);
 const SLOW_FRAMES: usize = 3;
 
 /// How often a map's side is chosen anew, until it takes as much memory as it should.
@@ -43,7 +43,7 @@ pub struct Budget {
 impl Default for Budget {
     /// For a default run within 45 s on two cores without a graphics card, truth and pictures included.
     fn default() -> Self {
-        Self { row: Duration::from_millis(400), all: Duration::from_secs(30) }
+        Self { row: Duration::from_millis(300), all: Duration::from_secs(25) }
     }
 }
 
@@ -207,7 +207,7 @@ mod tests {
                 |&count: &usize| goes_on(count, Duration::from_millis(u64::from(frame_ms)) * count as u32, time);
             (0..).find(|count| !goes_on(count))
         };
-        assert_eq!([1, 10, 150, 2000].map(frames), [Some(100), Some(40), Some(5), Some(3)]);
+        assert_eq!([1, 10, 100, 2000].map(frames), [Some(100), Some(40), Some(5), Some(3)]);
     }
 
     #[test]
