@@ -97,7 +97,7 @@ pub fn trust(samples: &[Sample], incident: &Incident) -> f32 {
     let mut moments = [0.0_f64; TRUSTS.len()];
     for sample in samples {
         let towards = sample.direction;
-        // As `Incident::density_per_sr` has it.
+        // On a surface, what is drawn below it is mirrored up.
         let by_lobes = match incident.normal {
             Some(normal) => {
                 density(&incident.lobes, &heights, towards)

@@ -36,10 +36,6 @@ use straight::InView;
 /// Virtual point lights, about.
 const VIRTUAL_LIGHTS: usize = 1024;
 
-/// Steps in which lines are looked at for the light in the open, in zones: twice the estimator's, at half its cost. In the gallery
-/// nodes then have a scalar irradiance within an rms factor of 1.06 of the estimator's.
-const TRACK_STEPS: f32 = 1.0;
-
 /// Told where nothing shines.
 const NO_LIGHT: &str = "no light shines into the void: all light in the guide is zero";
 
@@ -70,7 +66,7 @@ pub fn guide<'a>(
     // Side by side, for each has a part that a single thread does.
     let (tracks, shares) = staged("tracks", progress, cancel, || {
         let radiosity_w_m2 = std::slice::from_ref(&radiosity_w_m2);
-        let tracks = || Tracks::new(&network.grounds, &lines, radiosity_w_m2, 1, TRACK_STEPS, settings.seed);
+        let tracks = || Tracks::new(&network.grounds, &lines, radiosity_w_m2, 1, settings.seed);
         rayon::join(tracks, || Shares::new(network))
     })?;
     let ((views, samples), necks) = staged("sights", progress, cancel, || {

@@ -131,7 +131,7 @@ mod tests {
         let (_, model) = modelled(&two_rooms(), vec![lamp(Vec3::new(2.0, 0.5, 1.5), FLUX_W)], Vec::new());
         let (network, lines) = Network::new(&model, &Quality::COARSE, &Settings::default(), &Quiet, &Cancel::new())
             .expect("nobody stops it");
-        let tracks = Tracks::new(&network.grounds, &lines, &[Shine::new(&network).means_w_m2()], 1, 0.5, 0);
+        let tracks = Tracks::new(&network.grounds, &lines, &[Shine::new(&network).means_w_m2()], 1, 0);
         let found = probes(&network, &tracks, &InView::new(&network, 0));
         let graph = &model.skeleton.graph;
         // Both rooms are 3 m high and no wider than 4 m, the door 1 m.

@@ -33,21 +33,27 @@ pub struct Lobe {
 }
 
 impl Lobe {
+    /// Whether it is taken for even over the sphere.
+    pub fn is_even(&self) -> bool {
+        f64::from(self.concentration) < EVEN_BELOW
+    }
+
     /// Its density about `towards`, per steradian; over the sphere it integrates to 1.
     pub fn density_per_sr(&self, towards: Vec3) -> f64 {
         let kappa = f64::from(self.concentration);
-        if kappa < EVEN_BELOW {
+        if self.is_even() {
             return 1.0 / (4.0 * PI);
         }
-        let cosine = f64::from(self.direction.dot(towards));
-        // kappa / (2 pi (e^kappa - e^-kappa)) e^(kappa cosine), by a form that does not overflow.
-        kappa / (2.0 * PI * -(-2.0 * kappa).exp_m1()) * (kappa * (cosine - 1.0)).exp()
+        // kappa / (2 pi (e^kappa - e^-kappa)) e^(kappa cosine), by a form that does not overflow; the cosine by the chord, which
+        // single precision knows better where the two are close.
+        let chord = (self.direction - towards).as_dvec3();
+        kappa / (2.0 * PI * -(-2.0 * kappa).exp_m1()) * (-0.5 * kappa * chord.length_squared()).exp()
     }
 
     /// A direction drawn from it by two numbers in [0, 1) (Jakob 2012).
     pub fn drawn(&self, [height, turn]: [f64; 2]) -> Vec3 {
         let kappa = f64::from(self.concentration);
-        let cosine = if kappa < EVEN_BELOW {
+        let cosine = if self.is_even() {
             1.0 - 2.0 * height
         } else {
             1.0 + (1.0 - height + height * (-2.0 * kappa).exp()).ln() / kappa
@@ -96,17 +102,6 @@ pub struct Incident {
 }
 
 impl Incident {
-    /// The density of directions drawn from the lobes, per steradian; on a surface, what points below it is mirrored up.
-    pub fn density_per_sr(&self, towards: Vec3) -> f64 {
-        let all_around = |towards: Vec3| -> f64 {
-            self.lobes.iter().map(|lobe| f64::from(lobe.weight) * lobe.density_per_sr(towards)).sum()
-        };
-        match self.normal {
-            Some(normal) => all_around(towards) + all_around(towards - 2.0 * normal.dot(towards) * normal),
-            None => all_around(towards),
-        }
-    }
-
     /// What comes to a point near the place: the same light, its lobes turned.
     pub fn seen_from(&self, point_m: Vec3) -> Self {
         let moved_m = point_m - self.position_m;

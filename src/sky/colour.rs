@@ -28,7 +28,8 @@ const ZENITH_XY: [[[f64; 4]; 3]; 2] = [
 ];
 
 /// XYZ to linear sRGB (IEC 61966-2-1).
-const RGB_OF_XYZ: [[f64; 3]; 3] = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
+pub const RGB_OF_XYZ: [[f64; 3]; 3] =
+    [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
 
 /// The sky of one sun and turbidity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,8 +38,8 @@ pub struct Preetham {
     pub zenith: [f64; 3],
     /// A to E for Y, x and y.
     pub perez: [[f64; 5]; 3],
-    /// Perez' form at the zenith.
-    at_zenith: [f64; 3],
+    /// Perez' form at the zenith: Y, x and y of a direction are those of the zenith by its form over this.
+    pub at_zenith: [f64; 3],
 }
 
 impl Preetham {

@@ -8,7 +8,8 @@
 //! it is when no cloud is there; [`simple_sun`] is the short formula of graphics, for comparison.
 //!
 //! [`hosek`] is the brightness of a clear sky by direction, in RGB and by band, [`spectrum`] what beam and sky bring by
-//! wavelength, [`efficacy`] how much of it the eye sees, [`disc`] how the beam is spread over the sun, [`colour`] the sky's colour, [`picture`] a fisheye of it all.
+//! wavelength, [`efficacy`] how much of it the eye sees, [`disc`] how the beam is spread over the sun, [`colour`] the sky's colour,
+//! [`harmonics`] what it casts on a surface, [`picture`] a fisheye of it all.
 
 pub mod clear;
 pub mod colour;
@@ -17,6 +18,7 @@ pub mod dome;
 pub mod efficacy;
 pub mod events;
 pub mod facade;
+pub mod harmonics;
 pub mod hosek;
 pub mod lit;
 pub mod map;

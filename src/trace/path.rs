@@ -38,6 +38,15 @@ pub(super) struct Sample {
     pub(super) rays: u32,
 }
 
+impl Sample {
+    /// Adds what comes from `direction`, as the irradiance on a surface that squarely faces it; the sensor takes it by the cosine to
+    /// its normal.
+    pub(super) fn add(&mut self, normal: Option<Vec3>, direction: Vec3, irradiance_w_m2: f64) {
+        self.value_w_m2 += cosine_to(normal, direction) * irradiance_w_m2;
+        self.flux_w_m2 += irradiance_w_m2 * direction.as_dvec3();
+    }
+}
+
 impl Paths<'_> {
     /// One sample of the (scalar) irradiance and the net flux at a sensor. A planar sensor is lifted off the surface
     /// that it lies on by [`Rays::epsilon_m`].
@@ -45,20 +54,15 @@ impl Paths<'_> {
         let normal = sensor.normal;
         let position_m = sensor.position_m + normal.unwrap_or(Vec3::ZERO) * self.rays.epsilon_m();
         let mut sample = Sample { rays: 1, ..Sample::default() };
-        let mut add = |direction: Vec3, irradiance_w_m2: f64| {
-            let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
-            sample.value_w_m2 += cosine * irradiance_w_m2;
-            sample.flux_w_m2 += irradiance_w_m2 * direction.as_dvec3();
-        };
         if let Some((direction, irradiance_w_m2)) = self.direct(position_m, normal, random) {
-            add(direction, irradiance_w_m2);
+            sample.add(normal, direction, irradiance_w_m2);
         }
         let (direction, density_per_sr) = match normal {
             None => (uniform_on_sphere(random), 1.0 / (4.0 * PI)),
             Some(normal) => towards_hemisphere(normal, random),
         };
         let (radiance_w_m2_sr, rays) = self.reflected(position_m, direction, random);
-        add(direction, radiance_w_m2_sr / density_per_sr);
+        sample.add(normal, direction, radiance_w_m2_sr / density_per_sr);
         sample.rays += rays;
         sample
     }
@@ -67,13 +71,25 @@ impl Paths<'_> {
     /// faces it. `None` for no light.
     pub(super) fn direct(&self, position_m: Vec3, normal: Option<Vec3>, random: &mut Random) -> Option<(Vec3, f64)> {
         let (emitter, probability) = self.sampler.choose(position_m, normal, random.number())?;
+        let (direction, irradiance_w_m2) = self.straight(emitter, position_m, normal, random)?;
+        Some((direction, irradiance_w_m2 / probability))
+    }
+
+    /// The same from one emitter alone.
+    pub(super) fn straight(
+        &self,
+        emitter: usize,
+        position_m: Vec3,
+        normal: Option<Vec3>,
+        random: &mut Random,
+    ) -> Option<(Vec3, f64)> {
         let light = self.sampler.sample(emitter, position_m, random.pair())?;
         if normal.is_some_and(|normal| normal.dot(light.direction) <= 0.0) {
             return None;
         }
         // The ends stand clear of their surfaces already; pulling them in further could skip a wall in a corner.
         let share = self.rays.transmitted_past(position_m, light.end_m, |_| false);
-        (share > 0.0).then(|| (light.direction, f64::from(share) * light.irradiance_w_m2 / probability))
+        (share > 0.0).then(|| (light.direction, f64::from(share) * light.irradiance_w_m2))
     }
 
     /// One sample of the reflected radiance that comes to `position_m` from `direction`, W/m2/sr, and the rays it took.
@@ -131,6 +147,11 @@ impl Paths<'_> {
     }
 }
 
+/// How squarely a sensor faces `direction`: 0 from behind, 1 from all around where it has no normal.
+pub(super) fn cosine_to(normal: Option<Vec3>, direction: Vec3) -> f64 {
+    normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)))
+}
+
 pub(super) fn uniform_on_sphere(random: &mut Random) -> Vec3 {
     let [height, turn] = random.pair();
     let z = 1.0 - 2.0 * height;
@@ -152,6 +173,12 @@ pub(super) fn towards_hemisphere(normal: Vec3, random: &mut Random) -> (Vec3, f6
     let [height, turn] = random.pair();
     let cosine = if by_cosine { (1.0 - height).sqrt() } else { 1.0 - height };
     (about(normal, cosine, turn), 0.5 * cosine / PI + 0.5 / (2.0 * PI))
+}
+
+/// The density of [`towards_hemisphere`], per steradian; none below the surface.
+pub(super) fn hemisphere_per_sr(normal: Vec3, direction: Vec3) -> f64 {
+    let cosine = f64::from(normal.dot(direction));
+    if cosine > 0.0 { 0.5 * cosine / PI + 0.5 / (2.0 * PI) } else { 0.0 }
 }
 
 /// The unit vector at that cosine from `axis`, turned about it by that share of a turn.

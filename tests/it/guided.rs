@@ -78,34 +78,38 @@ fn agree(what: &str, both: &Both, least_sensors: usize) {
     assert!(squares / count < most, "{what}: the mean square is {:.2}, above {most:.2}", squares / count);
 }
 
-const SCENES: [(&str, usize); 7] = [
-    ("scenes/gallery/gallery.toml", 4),
-    ("scenes/two_rooms/two_rooms.toml", 15),
-    ("scenes/tower/tower.toml", 15),
-    ("scenes/corridor/corridor.toml", 12),
-    ("scenes/cave/cave.toml", 15),
-    ("scenes/keyhole/keyhole.toml", 3),
-    ("scenes/furnace/furnace.toml", 5),
+/// Scenes with their samples, the more the rarer the ways of light, and how many sensors are sound at least.
+const SCENES: [(&str, u32, usize); 7] = [
+    ("scenes/gallery/gallery.toml", 32_768, 5),
+    ("scenes/two_rooms/two_rooms.toml", 8192, 15),
+    ("scenes/tower/tower.toml", 8192, 15),
+    ("scenes/corridor/corridor.toml", 8192, 12),
+    ("scenes/cave/cave.toml", 8192, 15),
+    ("scenes/keyhole/keyhole.toml", 65_536, 4),
+    ("scenes/furnace/furnace.toml", 4096, 200),
 ];
 
 #[test]
 fn it_agrees_with_the_plain_tracer_in_every_scene() {
-    for (scene, least_sensors) in SCENES {
-        agree(scene, &both(scene, 1, 8192, |_| ()), least_sensors);
+    for (scene, samples, least_sensors) in SCENES {
+        agree(scene, &both(scene, 1, samples, |_| ()), least_sensors);
     }
+}
+
+/// Every lobe turned to where it is least true and narrowed, every lamp as bright as the others.
+fn turn(place: &mut Incident, trust: f32) {
+    let flat = place.normal.unwrap_or(Vec3::ZERO);
+    place.lobes.iter_mut().for_each(|lobe| {
+        lobe.direction = (2.0 * lobe.direction.dot(flat) * flat - lobe.direction).normalize();
+        lobe.concentration = 50.0;
+    });
+    place.trust = trust;
+    place.direct_w_m2.iter_mut().for_each(|direct_w_m2| *direct_w_m2 = 1.0);
 }
 
 #[test]
 fn a_guide_that_lies_does_not_bias() {
-    let turned = |place: &mut Incident| {
-        let flat = place.normal.unwrap_or(Vec3::ZERO);
-        place.lobes.iter_mut().for_each(|lobe| {
-            lobe.direction = (2.0 * lobe.direction.dot(flat) * flat - lobe.direction).normalize();
-            lobe.concentration = 50.0;
-        });
-        place.trust = 0.8;
-        place.direct_w_m2.iter_mut().for_each(|direct_w_m2| *direct_w_m2 = 1.0);
-    };
+    let turned = |trust: f32| move |place: &mut Incident| turn(place, trust);
     let boasting = |place: &mut Incident| place.reflected_w_m2 *= if place.normal.is_some() { 30.0 } else { 1.0 };
     let modest = |place: &mut Incident| {
         place.reflected_w_m2 *= if place.normal.is_some() { 0.03 } else { 1.0 };
@@ -118,15 +122,21 @@ fn a_guide_that_lies_does_not_bias() {
         (place.reflected_w_m2, place.trust) = (f32::NAN, f32::NAN);
         place.direct_w_m2.clear();
     };
-    // Below 512 samples no pilot stands in the way of the lie.
+    let check = |what: &str, runs: u32, samples: u32, lie: &dyn Fn(&mut Incident), least_sensors: usize| {
+        let both = both("scenes/two_rooms/two_rooms.toml", runs, samples, lie);
+        agree(&format!("{what}, {samples}"), &both, least_sensors);
+    };
+    // Below 512 samples no pilot stands in the way of the lie. Where a turned guide is trusted, true directions get so bright and
+    // so rare that it takes many runs until no single sample decides.
     for (runs, samples) in [(20, 480), (1, 8192)] {
-        let scene = "scenes/two_rooms/two_rooms.toml";
-        agree(&format!("turned, {samples}"), &both(scene, runs, samples, turned), 1);
-        agree(&format!("boasting, {samples}"), &both(scene, runs, samples, boasting), 5);
-        agree(&format!("modest, {samples}"), &both(scene, runs, samples, modest), 5);
-        agree(&format!("silent, {samples}"), &both(scene, runs, samples, silent), 5);
-        agree(&format!("broken, {samples}"), &both(scene, runs, samples, broken), 5);
+        check("half turned", runs, samples, &turned(0.5), 8);
+        check("boasting", runs, samples, &boasting, 15);
+        check("modest", runs, samples, &modest, 10);
+        check("silent", runs, samples, &silent, 15);
+        check("broken", runs, samples, &broken, 15);
     }
+    check("turned", 160, 480, &turned(0.8), 5);
+    check("turned", 1, 8192, &turned(0.8), 15);
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn median_ms(offscreen: &mut Offscreen, batches: Vec<Batch>) -> anyhow::Result<f
     let aspect = SIZE_PX[0] as f32 / SIZE_PX[1] as f32;
     let cuts = vec![Cut { normal: Vec3::Z, offset_m: 0.5 }];
     let camera = Camera::fitted(BOUNDS_M, aspect);
-    let mut picture = Picture { camera, background: [[60, 66, 74], [28, 30, 34]], cuts, batches };
+    let mut picture = Picture { camera, background: [[60, 66, 74], [28, 30, 34]], sunlight: None, cuts, batches };
     offscreen.draw(&picture, SIZE_PX)?;
     let mut times_ms = Vec::new();
     for _ in 0..REDRAWS {

@@ -2,9 +2,9 @@
 
 use crate::camera::{Camera, Standard};
 use crate::controls::Layer;
-use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Slice, VoxelShow};
+use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Shadow, Slice, VoxelShow};
 use crate::outdoors::QUANTITIES;
-use crate::shadows::command::ShadowArgs;
+use crate::shadows::{self, command::ShadowArgs};
 use clap::{Parser, Subcommand};
 use glam::{DVec3, Vec3};
 use jiff::civil::{Date, Time};
@@ -32,7 +32,7 @@ pub struct Args {
     pub size: [u32; 2],
 
     /// A layer to switch on, or off with a minus before it (`-mesh`), or how one looks (`nodes=flux`, `mesh=exposure`,
-    /// `voxels=distance`, `exposure=svf`); may be given several times, or with commas between.
+    /// `voxels=distance`, `exposure=svf`, `shadows=hsm`); may be given several times, or with commas between.
     #[arg(long = "layer", value_name = "LAYER", value_delimiter = ',', allow_hyphen_values = true, value_parser = layer)]
     pub layers: Vec<Look>,
 
@@ -111,6 +111,8 @@ pub enum Look {
     Slice(usize),
     /// Which quantity of the exposure is shown.
     Exposure(Quantity),
+    /// Sunlight with shadows by a method.
+    Shadows(shadows::Method),
 }
 
 /// Where a picture is taken from.
@@ -126,7 +128,7 @@ impl Look {
     /// Does as wished.
     pub fn apply(self, layers: &mut Layers) {
         match self {
-            Self::Switch(layer, is_on) => *layer.switch(layers) = is_on,
+            Self::Switch(layer, is_on) => layer.set(layers, is_on),
             Self::SunPath(is_on) => layers.sun_path = is_on,
             Self::Values(is_on) => layers.sensor_values = is_on,
             Self::Ratios(is_on) => layers.sensor_ratios = is_on,
@@ -137,6 +139,10 @@ impl Look {
             Self::Voxels(show) => (layers.voxels, layers.voxel_show) = (true, show),
             Self::Slice(axis) => (layers.voxels, layers.voxel_slice) = (true, Some(Slice { axis, share: 0.5 })),
             Self::Exposure(quantity) => layers.quantity = quantity,
+            Self::Shadows(method) => {
+                layers.light_by_sun(true);
+                layers.shadow = Shadow::by(method);
+            }
         }
     }
 }
@@ -193,7 +199,7 @@ fn theme(text: &str) -> Result<Theme, String> {
 }
 
 /// Layers by their names on the command line.
-const LAYERS: [(&str, Layer); 12] = [
+const LAYERS: [(&str, Layer); 13] = [
     ("mesh", Layer::Mesh),
     ("voxels", Layer::Voxels),
     ("nodes", Layer::Nodes),
@@ -206,6 +212,7 @@ const LAYERS: [(&str, Layer); 12] = [
     ("ball", Layer::Ball),
     ("paths", Layer::Paths),
     ("cut", Layer::Cut),
+    ("shadows", Layer::Shadows),
 ];
 
 fn layer(text: &str) -> Result<Look, String> {
@@ -235,7 +242,7 @@ fn layer(text: &str) -> Result<Look, String> {
         "slice=x" => Look::Slice(0),
         "slice=y" => Look::Slice(1),
         "slice=z" => Look::Slice(2),
-        name => return exposure(name).ok_or_else(|| unknown(text)),
+        name => return exposure(name).or_else(|| shadows(name)).ok_or_else(|| unknown(text)),
     };
     Ok(look)
 }
@@ -245,13 +252,18 @@ fn exposure(name: &str) -> Option<Look> {
     QUANTITIES.into_iter().find(|quantity| quantity.name() == name).map(Look::Exposure)
 }
 
+fn shadows(name: &str) -> Option<Look> {
+    shadows::Method::from_name(name.strip_prefix("shadows=")?).map(Look::Shadows)
+}
+
 fn unknown(text: &str) -> String {
     let layers = LAYERS.map(|(name, _)| name).join(", ");
     let quantities = QUANTITIES.map(Quantity::name).join(", ");
+    let methods = shadows::Method::ALL.map(shadows::Method::name).join(", ");
     format!(
         "{text:?} is no layer; there are {layers}, sun, values, ratios, pixels; mesh=material, irradiance, exposure, shaded, \
          wireframe or transparent; nodes=irradiance, flux, radius, cell or light; voxels=solid, void or distance; \
-         slice=x, y or z; exposure={quantities}"
+         slice=x, y or z; exposure={quantities}; shadows={methods}"
     )
 }
 
@@ -295,6 +307,10 @@ mod tests {
         }
         assert!(!layers.mesh && layers.cells && layers.sensor_values && layers.voxels);
         assert_eq!((layers.node_colour, layers.quantity), (NodeColour::Flux, Quantity::Svf));
+        layer("shadows=vsm").unwrap().apply(&mut layers);
+        assert!(layers.mesh && layers.shadows && layers.shadow.method == shadows::Method::Vsm);
+        layer("-shadows").unwrap().apply(&mut layers);
+        assert!(layers.mesh && !layers.shadows && layer("shadows=soft").is_err());
         let error = layer("nods").unwrap_err();
         assert!(error.contains("\"nods\" is no layer") && error.contains("nodes, edges"), "{error}");
         assert!(layer("exposure=heat").is_err() && layer("-nodes=flux").is_ok());

@@ -9,6 +9,7 @@ use crate::controls::Preset;
 use crate::layers::{Layers, MeshColour};
 use crate::log::Log;
 use crate::measure::Measure;
+use crate::outdoors::facade::Facade;
 use crate::request::{History, Request};
 use crate::results::Results;
 use glam::Vec3;
@@ -124,6 +125,8 @@ pub struct State {
     pub camera: Camera,
     /// What is picked.
     pub picked: Option<Picked>,
+    /// The face of the mesh that was touched last, while nothing else is picked.
+    pub facade: Option<Facade>,
     /// What the pointer is over.
     pub hovered: Option<Picked>,
     /// Where the arrows stand that what is picked is dragged by, and how long they are, metres; `None` without.
@@ -155,6 +158,7 @@ impl State {
             scales: BTreeMap::new(),
             camera: Camera::fitted((Vec3::ZERO, Vec3::ONE), 1.0),
             picked: None,
+            facade: None,
             hovered: None,
             gizmo: None,
             ways: Vec::new(),
@@ -212,8 +216,9 @@ impl State {
         self.kept.maps.get(&measure).copied().unwrap_or_else(|| measure.map())
     }
 
-    /// Picks something, or nothing, and finds its ways to the lights.
+    /// Picks something, or nothing, and finds its ways to the lights; no face of the mesh stays picked.
     pub fn pick(&mut self, picked: Option<Picked>) {
+        self.facade = None;
         self.picked = picked;
         self.ways = picked.map_or_else(Vec::new, |picked| crate::ways::to_lights(&self.results, picked));
     }

@@ -331,7 +331,7 @@ impl<'a> Network<'a> {
         });
         let variants = self.variants_w_m2.iter().map(|variant| radiosity(variant, &all));
         let radiosity_w_m2: Vec<Vec<f64>> = columns.chain(variants).collect();
-        Tracks::new(&self.grounds, lines, &radiosity_w_m2, self.reflected_w_m2.len(), read::STEP_SHARE, settings.seed)
+        Tracks::new(&self.grounds, lines, &radiosity_w_m2, self.reflected_w_m2.len(), settings.seed)
     }
 
     /// The lights that shine into the void.

@@ -23,8 +23,8 @@ use petgraph::graph::NodeIndex;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Lines are looked at in steps of this share of a zone by default.
-pub const STEP_SHARE: f32 = 0.5;
+/// Lines are looked at in steps of this share of a zone, each of which costs a look at the voxels.
+const STEP_SHARE: f32 = 0.5;
 
 /// Offsets of the steps' sequences start here.
 const STEP_OFFSETS: u64 = 1 << 44;
@@ -72,14 +72,12 @@ struct Stretch {
 
 impl Tracks {
     /// What the lines of a network bring to its zones: for each column of `radiosity_w_m2` its scalar irradiance. The first
-    /// `summed` columns make up the net flux. Lines are looked at in steps of `step_share` of a zone ([`STEP_SHARE`]), each of
-    /// which costs a look at the voxels.
+    /// `summed` columns make up the net flux.
     pub fn new(
         network: &super::Grounds,
         lines: &[Line],
         radiosity_w_m2: &[Vec<f64>],
         summed: usize,
-        step_share: f32,
         seed: u64,
     ) -> Self {
         let zones = network.zones.count;
@@ -88,9 +86,7 @@ impl Tracks {
             .par_iter()
             .enumerate()
             .with_min_len(256)
-            .map(|(number, line)| {
-                along(network, line, step_share, sequence::offset(seed, STEP_OFFSETS + number as u64)[0] as f32)
-            })
+            .map(|(number, line)| along(network, line, sequence::offset(seed, STEP_OFFSETS + number as u64)[0] as f32))
             .collect();
 
         let mut tracks = Self {
@@ -188,11 +184,11 @@ pub fn seen_from(line: &Line, panes_before: usize, radiosity_w_m2: &[f64]) -> [f
 }
 
 /// The zones along a line, in steps that begin at a random place.
-fn along(grounds: &super::Grounds, line: &Line, step_share: f32, offset: f32) -> Vec<Stretch> {
+fn along(grounds: &super::Grounds, line: &Line, offset: f32) -> Vec<Stretch> {
     let lattice = &grounds.model.voxels.lattice;
     let zone = |at_m: Vec3| {
         let node = grounds.model.skeleton.nearest.node(lattice.voxel_at(at_m))?;
-        Some((grounds.zones.at(node, at_m), step_share * grounds.zones.edge_m(node)))
+        Some((grounds.zones.at(node, at_m), STEP_SHARE * grounds.zones.edge_m(node)))
     };
     let mut stretches = Vec::new();
     // The step is that of the zone just left, so that a line's steps suit where it is; its first is a voxel.

@@ -134,6 +134,11 @@ impl Spectrum {
     pub fn beam_xyz_klx(&self) -> [f64; 3] {
         observer::xyz_klx(&self.beam_w_m2_um)
     }
+
+    /// The scattered light's CIE XYZ on the horizontal, kilolux.
+    pub fn diffuse_xyz_klx(&self) -> [f64; 3] {
+        observer::xyz_klx(&self.diffuse_w_m2_um)
+    }
 }
 
 /// Shares of light that pass each constituent.

@@ -107,6 +107,10 @@ fn the_beam_is_as_bright_and_as_warm_as_sunlight() {
     let high = Spectrum::clear(1.0, 1.0, &Atmosphere::new(2.5));
     let efficacy = 1000.0 * high.beam_xyz_klx()[1] / high.beam_w_m2(Band::Broadband);
     assert!((93.0..113.0).contains(&efficacy), "{efficacy}");
+    // Light of the blue sky has 110 to 150 lm/W (Perez et al. 1990), and is bluer than white.
+    let [x, y, z] = high.diffuse_xyz_klx();
+    let efficacy = 1000.0 * y / high.diffuse_w_m2(Band::Broadband);
+    assert!((105.0..150.0).contains(&efficacy) && z > 1.2 * x, "{efficacy} {x} {z}");
     let [x, _, z] = Spectrum::clear(0.03, 1.0, &Atmosphere::new(2.5)).beam_xyz_klx();
     assert!(x > 4.0 * z, "{x} {z}");
 }

@@ -6,10 +6,12 @@
 //! still bring, as a share of what the sensor is to get. Where the guide knows no place the draws are the plain tracer's.
 
 use super::mixture::{Mixture, Seen};
-use crate::light::{Guiding, Sampler};
-use crate::rays::{Rays, Surface};
-use crate::scene::{Scene, Sensor};
-use crate::trace::path::{Sample, TURNS_BEFORE_ROULETTE, cosine_about, towards_hemisphere, uniform_on_sphere};
+use crate::light::Guiding;
+use crate::scene::Sensor;
+use crate::trace::path::{
+    self, Sample, TURNS_BEFORE_ROULETTE, cosine_about, cosine_to, hemisphere_per_sr, towards_hemisphere,
+    uniform_on_sphere,
+};
 use crate::trace::random::Random;
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -37,31 +39,24 @@ const MOST_TURNS: u32 = 24;
 
 /// All that a path needs to know.
 pub(super) struct Paths<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) rays: &'a Rays,
-    pub(super) sampler: &'a Sampler,
+    pub(super) plain: &'a path::Paths<'a>,
     pub(super) mixtures: &'a [Mixture],
     pub(super) guiding: &'a Guiding<'a>,
-    /// Most reflections.
-    pub(super) max_bounces: u32,
 }
 
 impl Paths<'_> {
     /// One sample of the (scalar) irradiance and the net flux at a sensor.
     pub(super) fn sample(&self, number: usize, random: &mut Random) -> Sample {
-        let Some(Sensor { normal, position_m, .. }) = self.scene.sensors.get(number) else { return Sample::default() };
+        let Some(Sensor { normal, position_m, .. }) = self.plain.scene.sensors.get(number) else {
+            return Sample::default();
+        };
         let normal = *normal;
-        let position_m = *position_m + normal.unwrap_or(Vec3::ZERO) * self.rays.epsilon_m();
+        let position_m = *position_m + normal.unwrap_or(Vec3::ZERO) * self.plain.rays.epsilon_m();
         let own = self.guiding.at_sensors.get(number).and_then(|&place| self.mixtures.get(place as usize));
         let mixture = own.or_else(|| self.mixture(position_m, normal));
         let mut sample = Sample { rays: 1, ..Sample::default() };
-        let mut add = |direction: Vec3, irradiance_w_m2: f64| {
-            let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
-            sample.value_w_m2 += cosine * irradiance_w_m2;
-            sample.flux_w_m2 += irradiance_w_m2 * direction.as_dvec3();
-        };
         if let Some((direction, irradiance_w_m2)) = self.direct(position_m, normal, mixture, random) {
-            add(direction, irradiance_w_m2);
+            sample.add(normal, direction, irradiance_w_m2);
         }
         let seen = mixture.map(|mixture| mixture.seen_from(position_m)).filter(|seen| !seen.is_empty());
         let (direction, density_per_sr) = match normal {
@@ -71,17 +66,19 @@ impl Paths<'_> {
                 Some(normal),
                 random,
                 |random| towards_hemisphere(normal, random).0,
-                |direction| 0.5 * f64::from(normal.dot(direction).max(0.0)) / PI + 0.5 / (2.0 * PI),
+                |direction| hemisphere_per_sr(normal, direction),
             ),
         };
-        let cosine = normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
-        if density_per_sr > 0.0 {
-            let expected_w_m2 = mixture.map_or(0.0, |mixture| mixture.expected_w_m2(normal));
-            let goal = expected_w_m2 * density_per_sr / cosine.max(1e-3);
-            let (radiance_w_m2_sr, rays) = self.reflected(position_m, direction, goal, random);
-            add(direction, radiance_w_m2_sr / density_per_sr);
-            sample.rays += rays;
+        // A place in the open knows light from below the sensor's surface as well.
+        let cosine = cosine_to(normal, direction);
+        if cosine <= 0.0 || density_per_sr <= 0.0 {
+            return sample;
         }
+        let expected_w_m2 = mixture.map_or(0.0, |mixture| mixture.expected_w_m2(normal));
+        let goal = expected_w_m2 * density_per_sr / cosine.max(1e-3);
+        let (radiance_w_m2_sr, rays) = self.reflected(position_m, direction, goal, random);
+        sample.add(normal, direction, radiance_w_m2_sr / density_per_sr);
+        sample.rays += rays;
         sample
     }
 
@@ -98,25 +95,19 @@ impl Paths<'_> {
         mixture: Option<&Mixture>,
         random: &mut Random,
     ) -> Option<(Vec3, f64)> {
-        let known = mixture.filter(|mixture| mixture.direct_w_m2 > 0.0);
-        let (emitter, probability) = match known {
-            None => self.sampler.choose(position_m, normal, random.number())?,
-            Some(mixture) => {
-                let emitter = if random.number() < GUIDED_LAMPS {
-                    mixture.emitter(random.number())
-                } else {
-                    self.sampler.choose(position_m, normal, random.number())?.0
-                };
-                let plain = self.sampler.chance(emitter, position_m, normal);
-                (emitter, GUIDED_LAMPS * mixture.chance(emitter) + (1.0 - GUIDED_LAMPS) * plain)
-            }
+        let Some(mixture) = mixture.filter(|mixture| mixture.direct_w_m2 > 0.0) else {
+            return self.plain.direct(position_m, normal, random);
         };
-        let light = self.sampler.sample(emitter, position_m, random.pair())?;
-        if normal.is_some_and(|normal| normal.dot(light.direction) <= 0.0) {
-            return None;
-        }
-        let share = self.rays.transmitted_past(position_m, light.end_m, |_| false);
-        (share > 0.0).then(|| (light.direction, f64::from(share) * light.irradiance_w_m2 / probability))
+        let sampler = self.plain.sampler;
+        let emitter = if random.number() < GUIDED_LAMPS {
+            mixture.emitter(random.number())
+        } else {
+            sampler.choose(position_m, normal, random.number())?.0
+        };
+        let plainly = sampler.chance(emitter, position_m, normal);
+        let probability = GUIDED_LAMPS * mixture.chance(emitter) + (1.0 - GUIDED_LAMPS) * plainly;
+        let (direction, irradiance_w_m2) = self.plain.straight(emitter, position_m, normal, random)?;
+        Some((direction, irradiance_w_m2 / probability))
     }
 
     /// One sample of the reflected radiance that comes to `position_m` from `direction`, W/m2/sr, where about `goal` is
@@ -124,13 +115,13 @@ impl Paths<'_> {
     fn reflected(&self, mut position_m: Vec3, mut direction: Vec3, goal: f64, random: &mut Random) -> (f64, u32) {
         let (mut radiance_w_m2_sr, mut weight) = (0.0, 1.0);
         let (mut bounces, mut turns, mut rays) = (0, 0, 0);
-        while bounces < self.max_bounces {
+        while bounces < self.plain.max_bounces {
             rays += 1;
-            let Some(hit) = self.rays.closest(position_m, direction, f32::INFINITY) else { break };
-            let Some((reflectance, transmittance)) = self.shares(hit.surface) else { break };
+            let Some(hit) = self.plain.rays.closest(position_m, direction, f32::INFINITY) else { break };
+            let Some((reflectance, transmittance)) = self.plain.shares(hit.surface) else { break };
             let facing = hit.facing();
             let at_m = position_m + hit.distance_m * direction;
-            let lift_m = facing * self.rays.epsilon_m();
+            let lift_m = facing * self.plain.rays.epsilon_m();
             let mixture = self.mixture(at_m, Some(facing));
             // What an irradiance here is worth to the sensor, as a share of what that is to get.
             let worth = if goal > 0.0 { weight * reflectance / PI / goal } else { 0.0 };
@@ -189,13 +180,6 @@ impl Paths<'_> {
             direction = next;
         }
         (radiance_w_m2_sr, rays)
-    }
-
-    /// Reflectance and transmittance of what was hit; `None` for lights and emissive faces, which are black.
-    fn shares(&self, surface: Surface) -> Option<(f64, f64)> {
-        let Surface::Triangle(triangle) = surface else { return None };
-        let material = self.scene.material(triangle as usize).filter(|material| !material.emits())?;
-        Some((f64::from(material.reflects()), f64::from(material.passes())))
     }
 }
 

@@ -205,13 +205,12 @@ mod tests {
     #[test]
     fn it_finds_a_hole_by_itself() {
         let scene = keyhole();
-        let (learned, plain) = (learned(&scene, 120_000), plain(&scene, 120_000));
+        // Of a quarter as many samples the variances are too rough: over twelve seeds such a gain was anything from 0.7 to 12.
+        let (learned, plain) = (learned(&scene, 480_000), plain(&scene, 480_000));
         let pairs = learned.field.readings.iter().zip(&plain.field.readings);
         let gains: Vec<f64> =
             pairs.map(|(ours, theirs)| (theirs.error_w_m2.unwrap() / ours.error_w_m2.unwrap()).powi(2)).collect();
-        // Variances by samples that are this skewed are rough themselves, so it is the mean factor that must be large.
-        let mean = gains.iter().product::<f64>().powf(1.0 / gains.len() as f64);
-        assert!(gains.iter().all(|&gain| gain > 1.0) && mean > 2.0, "by equal samples {gains:?} times");
+        assert!(gains.iter().all(|&gain| gain > 2.0), "by equal samples {gains:?} times");
     }
 
     #[test]

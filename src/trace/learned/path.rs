@@ -8,7 +8,8 @@ use super::directions::{direction_of, square_of};
 use super::places::{Place, Places, Sight};
 use crate::scene::Sensor;
 use crate::trace::path::{
-    MOST_SURVIVAL, Paths, Sample, TURNS_BEFORE_ROULETTE, cosine_about, towards_hemisphere, uniform_on_sphere,
+    MOST_SURVIVAL, Paths, Sample, TURNS_BEFORE_ROULETTE, cosine_about, cosine_to, hemisphere_per_sr,
+    towards_hemisphere, uniform_on_sphere,
 };
 use crate::trace::random::Random;
 use glam::Vec3;
@@ -44,14 +45,9 @@ pub(super) fn sample(
 ) -> Sample {
     let normal = sensor.normal;
     let position_m = sensor.position_m + normal.unwrap_or(Vec3::ZERO) * paths.rays.epsilon_m();
-    let cosine_to = |direction: Vec3| normal.map_or(1.0, |normal| f64::from(normal.dot(direction).max(0.0)));
     let mut sample = Sample { rays: 1, ..Sample::default() };
-    let mut add = |direction: Vec3, irradiance_w_m2: f64| {
-        sample.value_w_m2 += cosine_to(direction) * irradiance_w_m2;
-        sample.flux_w_m2 += irradiance_w_m2 * direction.as_dvec3();
-    };
     if let Some((direction, irradiance_w_m2)) = paths.direct(position_m, normal, random) {
-        add(direction, irradiance_w_m2);
+        sample.add(normal, direction, irradiance_w_m2);
     }
 
     let place = places.of_sensor(number);
@@ -62,21 +58,18 @@ pub(super) fn sample(
             place,
             random,
             |random| towards_hemisphere(normal, random).0,
-            |towards| match normal.dot(towards) {
-                cosine if cosine > 0.0 => 0.5 * f64::from(cosine) / PI + 0.5 / (2.0 * PI),
-                _ => 0.0,
-            },
+            |towards| hemisphere_per_sr(normal, towards),
         ),
     };
     let Drawn { direction, square, density_per_sr } = drawn;
-    let cosine = cosine_to(direction);
+    let cosine = cosine_to(normal, direction);
     if cosine <= 0.0 {
         return sample;
     }
     turns.clear();
     turns.push(Turn { place, square, worth_sr: cosine / density_per_sr, weight: 1.0, found_w_m2_sr: 0.0 });
     let (radiance_w_m2_sr, rays) = reflected(paths, places, position_m, direction, random, turns);
-    add(direction, radiance_w_m2_sr / density_per_sr);
+    sample.add(normal, direction, radiance_w_m2_sr / density_per_sr);
     sample.rays += rays;
     sights.extend(turns.iter().map(|turn| {
         let radiance_w_m2_sr = (radiance_w_m2_sr - turn.found_w_m2_sr).max(0.0) / turn.weight;

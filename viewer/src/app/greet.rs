@@ -17,6 +17,7 @@ pub fn scene(state: &mut State) {
     let only_sky = is_outdoors && is_dark;
     state.layers.sun_path = is_outdoors;
     state.layers.per_pixel = false;
+    state.layers.shadows = is_outdoors && !is_dark;
     state.layers.mesh_colour = if only_sky { MeshColour::Exposure } else { MeshColour::Material };
     for layer in [&mut state.layers.nodes, &mut state.layers.edges, &mut state.layers.arrows] {
         *layer = !only_sky;

@@ -255,6 +255,11 @@ impl App {
             (Some(old), Some(new)) => Arc::ptr_eq(old, new),
             _ => false,
         };
+        let is_same_mesh = match (&self.state.results.scene, &results.scene) {
+            (Some(old), Some(new)) => Arc::ptr_eq(old, new),
+            _ => false,
+        };
+        let facade = self.state.facade.filter(|_| is_same_mesh);
         let rungs = std::mem::take(&mut self.state.results.rungs);
         self.state.results = results;
         if is_same_model {
@@ -277,6 +282,7 @@ impl App {
             self.state.scales.remove(&Measure::Flux);
         }
         self.keep_picked();
+        self.state.facade = facade;
     }
 
     /// What is picked stays as long as there is such a thing; its ways are those of the new results.
@@ -315,8 +321,8 @@ impl App {
                 }
                 Command::Projection => state.camera.orthographic = !state.camera.orthographic,
                 Command::Toggle(layer) => {
-                    let switch = layer.switch(&mut state.layers);
-                    *switch = !*switch;
+                    let is_on = *layer.switch(&mut state.layers);
+                    layer.set(&mut state.layers, !is_on);
                 }
                 Command::Play => state.outdoors.is_playing = !state.outdoors.is_playing,
                 Command::Cancel if state.shows_help => state.shows_help = false,

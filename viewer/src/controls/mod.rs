@@ -61,6 +61,8 @@ pub enum Layer {
     Paths,
     /// The cut below the ceiling.
     Cut,
+    /// Sunlight and shadows.
+    Shadows,
 }
 
 impl Layer {
@@ -79,6 +81,15 @@ impl Layer {
             Self::Ball => &mut layers.ball,
             Self::Paths => &mut layers.paths,
             Self::Cut => &mut layers.cut,
+            Self::Shadows => &mut layers.shadows,
+        }
+    }
+
+    /// Switches it on or off, with what belongs to it.
+    pub fn set(self, layers: &mut crate::layers::Layers, is_on: bool) {
+        match self {
+            Self::Shadows => layers.light_by_sun(is_on),
+            layer => *layer.switch(layers) = is_on,
         }
     }
 }

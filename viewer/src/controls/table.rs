@@ -63,6 +63,7 @@ pub const KEYS: &[KeyRow] = &[
     layer(Key::B, Layer::Ball, "ball of the picked node"),
     layer(Key::T, Layer::Paths, "paths to the lights"),
     layer(Key::X, Layer::Cut, "cut below the ceiling"),
+    layer(Key::H, Layer::Shadows, "sunlight and shadows"),
     program(plain(Key::Space), Command::Play, "play the day, or stop it"),
     program(plain(Key::Escape), Command::Cancel, "stop the run, pick nothing"),
     program(sign(Key::Questionmark, false), Command::Help, "this sheet"),
@@ -103,6 +104,6 @@ pub const TOUCHES: &[TouchRow] = &[
     blender(TouchRow { shift: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Pan, "move aside") }),
     blender(TouchRow { ctrl: true, ..touch(Touch::Drag(PointerButton::Middle), Gesture::Zoom, "nearer or farther") }),
     touch(Touch::Wheel, Gesture::Zoom, "nearer or farther, to the pointer"),
-    touch(Touch::Click(PointerButton::Primary), Gesture::Pick, "pick a node, a sensor, a light or a part"),
+    touch(Touch::Click(PointerButton::Primary), Gesture::Pick, "pick a node, a sensor, a light, a part or a wall"),
     touch(Touch::DoubleClick(PointerButton::Primary), Gesture::Focus, "look at what lies there"),
 ];

@@ -4,6 +4,7 @@ use super::mesh::face;
 use super::veins::line;
 
 use crate::measure::Measure;
+use crate::outdoors::facade::Facade;
 use crate::paint::{Ball, Batch, Corner, Culling, FaceStyle, Stroke, What};
 use crate::panels::inspector::WayToLight;
 use crate::results::Results;
@@ -76,6 +77,13 @@ pub fn lights(lights: &[Light], longest_m: f32) -> Vec<Batch> {
 pub fn flat(data: Vec<Corner>, opacity: f32) -> Batch {
     let what = What::Faces { data: Arc::new(data), style: FaceStyle::Flat, culling: Culling::None };
     Batch { opacity, ..Batch::new(what) }
+}
+
+/// A picked face: its normal as an arrow where it was touched.
+pub fn facade(facade: &Facade, longest_m: f32) -> Batch {
+    let tip_m = facade.at_m + facade.normal * DIRECTION_OF_SCENE * longest_m;
+    let arrow = Stroke { arrow: true, ..line(facade.at_m, tip_m, 3.0, PICKED) };
+    Batch { on_top: true, ..Batch::new(What::Strokes { data: Arc::new(vec![arrow]) }) }
 }
 
 /// Where something that can be picked is, metres.

@@ -65,10 +65,14 @@ pub fn face([a, b, c]: [Vec3; 3], value: f32, colour: [u8; 4], sides: u32) -> [C
     [a, b, c].map(|position_m| Corner { position_m, normal, value, colour, sides })
 }
 
-/// The mesh in its own colours.
+/// The mesh in its own colours, in the light of sun and sky where these shine and nothing is to be seen through it.
 pub fn batches([opaque, glass]: Parts, layers: &Layers) -> Vec<Batch> {
     let culling = if layers.cull_near_walls { Culling::ToVoid } else { Culling::None };
-    let style = if layers.mesh_style == MeshStyle::Wireframe { FaceStyle::Wireframe } else { FaceStyle::Shaded };
+    let style = match layers.mesh_style {
+        MeshStyle::Wireframe => FaceStyle::Wireframe,
+        MeshStyle::Shaded if layers.shadows => FaceStyle::Sunlit,
+        MeshStyle::Shaded | MeshStyle::Transparent => FaceStyle::Shaded,
+    };
     let opacity = if layers.mesh_style == MeshStyle::Transparent { TRANSPARENT } else { 1.0 };
     let batch = |data, opacity| Batch { cut: true, opacity, ..Batch::new(What::Faces { data, style, culling }) };
     let glass_opacity = if style == FaceStyle::Wireframe { opacity } else { GLASS.min(opacity) };

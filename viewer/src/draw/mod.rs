@@ -12,8 +12,9 @@ use crate::colour::Scale;
 use crate::layers::{Layers, MeshColour, NodeColour, Section, Slice, VoxelShow};
 use crate::measure::Measure;
 use crate::outdoors::SensorExposure;
+use crate::outdoors::facade::Facade;
 use crate::outdoors::shown as outdoors;
-use crate::paint::{Ball, Batch, Corner, Culling, Cut, Picture, Stroke, Tint, What};
+use crate::paint::{Ball, Batch, Corner, Culling, Cut, FaceStyle, Picture, Shadows, Stroke, Sunlight, Tint, What};
 use crate::panels::inspector::WayToLight;
 use crate::results::{Estimate, Faces, Results};
 use crate::state::{Picked, State};
@@ -61,6 +62,7 @@ pub struct Drawer {
     sensors: Memo<OfSensors, Marks>,
     lights: Memo<(Vec<Light>, f32), Vec<Batch>>,
     picked: Memo<OfModel<OfMark>, Vec<Batch>>,
+    facade: Memo<(Facade, f32), Batch>,
     hovered: Memo<OfModel<OfMark>, Vec<Batch>>,
     ways: Memo<(Same<Model>, Vec<WayToLight>), Vec<Batch>>,
     gizmo: Memo<(Vec3, f32), Batch>,
@@ -91,9 +93,11 @@ impl Drawer {
         batches.extend(self.veins(state, &layers, size_px, is_dark));
         batches.extend(self.marks(state, &layers));
 
+        let sunlight = self.sunlight(state, &layers, &batches);
         let picture = Picture {
             camera: state.camera,
             background: if is_dark { DARK } else { LIGHT },
+            sunlight,
             cuts: cuts(&layers, bounds_m(&state.results)),
             batches,
         };
@@ -105,26 +109,37 @@ impl Drawer {
         Drawn { picture: shown, labels, notes }
     }
 
+    /// Sun and sky over the picture, where they are asked for and known; shadows where something is lit by the sun.
+    fn sunlight(&mut self, state: &State, layers: &Layers, batches: &[Batch]) -> Option<Sunlight> {
+        let now = state.outdoors.now.as_ref().filter(|_| layers.shadows)?;
+        let is_sunlit = |batch: &Batch| matches!(batch.what, What::Faces { style: FaceStyle::Sunlit, .. });
+        let casters = self.parts(state).filter(|_| batches.iter().any(is_sunlit)).map(|[opaque, _]| opaque);
+        let shadows = casters.map(|casters| Shadows { casters, settings: layers.shadow.settings() });
+        Some(Sunlight { light: now.light, shadows })
+    }
+
     /// Whether a layer is still being made.
     pub fn is_busy(&self) -> bool {
         self.voxels.is_busy() || self.cells.is_busy()
     }
 
     fn mesh(&mut self, state: &mut State, layers: &Layers) -> Vec<Batch> {
-        let results = state.results.clone();
-        let sides = results.sides.clone();
         if layers.mesh_colour == MeshColour::Irradiance
-            && let Some(faces) = &results.faces
+            && let Some(faces) = state.results.faces.clone()
         {
-            let data = self.faces.get(Same(Some(Arc::clone(faces))), |_| mesh::valued(faces));
+            let data = self.faces.get(Same(Some(Arc::clone(&faces))), |_| mesh::valued(&faces));
             return vec![mesh::coloured(data, Tint::Scaled(state.scale(Measure::Irradiance)), layers)];
         }
-        let Some(scene) = &results.scene else { return Vec::new() };
+        self.parts(state).map_or_else(Vec::new, |parts| mesh::batches(parts, layers))
+    }
+
+    /// The corners of the mesh.
+    fn parts(&mut self, state: &State) -> Option<mesh::Parts> {
+        let scene = state.results.scene.clone()?;
         // Sides are those of another mesh while a new one is on its way.
-        let sides = sides.filter(|sides| sides.len() == scene.mesh.triangles.len());
-        let key = (Same(Some(Arc::clone(scene))), Same(sides.clone()));
-        let parts = self.mesh.get(key, |_| mesh::corners(scene, sides.as_ref().map(|sides| &sides[..])));
-        mesh::batches(parts, layers)
+        let sides = state.results.sides.clone().filter(|sides| sides.len() == scene.mesh.triangles.len());
+        let key = (Same(Some(Arc::clone(&scene))), Same(sides.clone()));
+        Some(self.mesh.get(key, |_| mesh::corners(&scene, sides.as_ref().map(|sides| &sides[..]))))
     }
 
     fn voxels(&mut self, state: &mut State, layers: &Layers, wake: &Wake, notes: &mut Vec<String>) -> Vec<Batch> {
@@ -249,6 +264,9 @@ impl Drawer {
                 (of_model.clone(), of_estimate.clone(), (of_scene.clone(), lights.clone(), Some(picked), layers.ball));
             let make = |_: &_| marks::picked(&results, &lights, picked, layers.ball, longest_m);
             batches.extend(self.picked.get(key, make));
+        }
+        if let Some(facade) = state.facade {
+            batches.push(self.facade.get((facade, longest_m), |_| marks::facade(&facade, longest_m)));
         }
         if let Some(hovered) = state.hovered.filter(|hovered| Some(*hovered) != state.picked) {
             let without = Results { estimate: None, ..results.clone() };

@@ -1,6 +1,7 @@
 //! Which layers are on and how each looks: plain data that the panels change and `draw` turns into a picture.
 
 use crate::measure::Measure;
+use crate::shadows::{Method, Settings};
 use lightvein::daylight::Quantity;
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +105,39 @@ impl Default for Section {
     }
 }
 
+/// How shadows are found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shadow {
+    /// By which method.
+    pub method: Method,
+    /// Texels a side of a map.
+    pub resolution: u32,
+    /// Layers, where the method has several.
+    pub layers: usize,
+}
+
+impl Default for Shadow {
+    fn default() -> Self {
+        Self::by(Method::Hsm)
+    }
+}
+
+impl Shadow {
+    /// Resolutions that menus offer.
+    pub const RESOLUTIONS: [u32; 4] = [256, 512, 1024, 2048];
+
+    /// A method with the layers that it has by default, at 1024 texels.
+    pub const fn by(method: Method) -> Self {
+        Self { method, resolution: 1024, layers: method.default_layers() }
+    }
+
+    /// The settings of the method.
+    pub fn settings(&self) -> Settings {
+        self.method.settings(self.resolution, self.layers)
+    }
+}
+
 /// All layers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -146,6 +180,10 @@ pub struct Layers {
     pub paths: bool,
     /// The sky dome with the sun's path.
     pub sun_path: bool,
+    /// The sky behind the scene, and the mesh in the light of sun and sky with shadows.
+    pub shadows: bool,
+    /// How the shadows are found.
+    pub shadow: Shadow,
     /// Which quantity of the exposure is shown.
     #[serde(skip, default = "total")]
     pub quantity: Quantity,
@@ -187,6 +225,8 @@ impl Default for Layers {
             ball: true,
             paths: true,
             sun_path: false,
+            shadows: false,
+            shadow: Shadow::default(),
             quantity: Quantity::Total,
             per_pixel: false,
             cut: false,
@@ -204,6 +244,17 @@ impl Layers {
             _ if self.sensor_ratios => Measure::Ratio,
             MeshColour::Exposure => Measure::of(self.quantity),
             MeshColour::Material | MeshColour::Irradiance => Measure::Irradiance,
+        }
+    }
+
+    /// Switches the light of sun and sky: on, it is to be seen, so that no exposure stands in its place.
+    pub fn light_by_sun(&mut self, is_on: bool) {
+        self.shadows = is_on;
+        if is_on {
+            (self.mesh, self.per_pixel) = (true, false);
+            if self.mesh_colour == MeshColour::Exposure {
+                self.mesh_colour = MeshColour::Material;
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 //! Pictures of sun, sky and exposure for the view: plain data for `paint`, and names beside them.
 
+use super::light::in_scene;
 use super::sky::Sky;
 use super::sun::{DOME, SunDay, SunNow, dome_corner};
 use super::{FaceExposure, PixelExposure, values_of};
@@ -54,8 +55,7 @@ impl Dome {
 
     /// A direction (x east, y true north, z up) in the scene.
     pub fn direction(&self, direction: DVec3) -> Vec3 {
-        let (sin, cos) = self.north_rad.sin_cos();
-        DVec3::new(direction.x * cos + direction.y * sin, direction.y * cos - direction.x * sin, direction.z).as_vec3()
+        in_scene(self.north_rad, direction).as_vec3()
     }
 
     /// Where a direction meets it.

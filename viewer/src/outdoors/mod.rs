@@ -1,10 +1,12 @@
 //! Sun and sky: what is asked of them, what they give, and what of it is shown.
 //!
-//! [`compute`] answers an [`OutdoorRequest`] on the worker's thread, [`sun`] says where the sun stands at the shown moment, and
-//! [`draw`] makes pictures of both, and [`shown`] keeps what is on the screen. All figures are the library's: `lightvein::sky` and `lightvein::daylight`.
+//! [`compute`] answers an [`OutdoorRequest`] on the worker's thread, [`sun`] says where the sun stands at the shown moment, [`light`]
+//! what it and the sky cast, [`facade`] how it meets a picked face; [`draw`] makes pictures, [`shown`] keeps what is on the screen. All figures are the library's: `lightvein::sky` and `lightvein::daylight`.
 
 pub mod compute;
 pub mod draw;
+pub mod facade;
+pub mod light;
 pub mod shown;
 pub mod sky;
 pub mod sun;

@@ -175,7 +175,9 @@ pub fn seen_by(camera: &crate::camera::Camera, size_px: Vec2) -> Option<Camera> 
 pub fn batches(state: &mut State) -> Vec<Batch> {
     let faces = exposed_faces(state);
     let dome = drawn_dome(state).map(|dome| dome.batches.clone()).unwrap_or_default();
-    faces.into_iter().chain(dome).collect()
+    // The dome's own sky gives way to the one behind the scene.
+    let is_open = state.layers.shadows;
+    faces.into_iter().chain(dome.into_iter().skip(usize::from(is_open))).collect()
 }
 
 /// The names beside what is drawn, and where they stand.

@@ -3,6 +3,8 @@
 //! The colours are Preetham's, Shirley's and Smits' of a clear sky (Perez' form, [`lightvein::sky::colour`]), whatever the
 //! weather: they show where the light comes from and how the day goes, not what was measured.
 
+use super::light;
+use crate::paint::SkyLight;
 use jiff::SignedDuration;
 use jiff::civil::{Date, DateTime};
 use lightvein::sky::colour::{Preetham, luminance, tone_mapped};
@@ -22,7 +24,7 @@ pub const DOME: [usize; 2] = [72, 18];
 const WHITE_SHARE: f64 = 0.8;
 
 /// ... unless the sky is dimmer than this, kcd/m2, some minutes before sunrise: twilight and night are to look dark.
-const LEAST_WHITE: f64 = 0.7;
+pub(super) const LEAST_WHITE: f64 = 0.7;
 
 /// What depends on the date.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,6 +88,8 @@ pub struct SunNow {
     pub moment: DateTime,
     /// Where the sun is seen.
     pub sun: Sun,
+    /// What both cast, in the scene.
+    pub light: SkyLight,
     /// Colours of the sky, sRGB, at the corners of the dome's cells: [`DOME`] columns clockwise from true north in each of its
     /// rows from the horizon up, and a last row at the zenith.
     pub colours: Vec<[u8; 3]>,
@@ -108,7 +112,8 @@ impl SunNow {
             })
             .collect();
         let white = white(&rgb);
-        Ok(Self { moment, sun, colours: rgb.into_iter().map(|rgb| tone_mapped(rgb, white)).collect() })
+        let light = light::of(outdoors, moment, sun, &sky, white);
+        Ok(Self { moment, sun, light, colours: rgb.into_iter().map(|rgb| tone_mapped(rgb, white)).collect() })
     }
 }
 

@@ -2,13 +2,14 @@
 //!
 //! First pass: the background, the opaque batches, then the transparent ones, blended in the order given (within a batch
 //! in the order of its data: where several transparent faces lie behind one another their order may be wrong; culling to
-//! the void leaves mostly one). Second pass: what is on top, over everything, among itself hidden as usual.
+//! the void leaves mostly one). Before it, where the sun shines, shadow maps, in passes of their own. Second pass: what is on top, over everything, among itself hidden as usual.
 
 use eframe::wgpu::*;
 
 use super::picture::{Batch, Picture};
 use super::pipelines::{COLOURS, DEPTHS, Key, Pipelines, SAMPLES};
-use super::uniforms::{BATCH_STRIDE, BatchUniform, ViewUniform, colour_maps};
+use super::shade::Shade;
+use super::uniforms::{BATCH_STRIDE, BatchUniform, SkyUniform, ViewUniform, colour_maps};
 use super::upload::Uploads;
 
 /// Everything on the GPU that one view needs.
@@ -16,8 +17,11 @@ pub struct Canvas {
     pipelines: Pipelines,
     uploads: Uploads,
     view: Buffer,
+    sky: Buffer,
     view_group: BindGroup,
     batches: Batches,
+    /// Made when the first shadows are asked for.
+    shade: Option<Shade>,
     target: Option<Target>,
     drawn: Option<Picture>,
     redraws: usize,
@@ -50,6 +54,7 @@ impl Canvas {
     pub fn new(device: &Device, queue: &Queue) -> Self {
         let pipelines = Pipelines::new(device);
         let view = uniforms(device, "view", size_of::<ViewUniform>());
+        let sky = uniforms(device, "sky", size_of::<SkyUniform>());
         let maps = colour_maps(device, queue).create_view(&TextureViewDescriptor::default());
         let view_group = device.create_bind_group(&BindGroupDescriptor {
             label: Some("view"),
@@ -57,11 +62,12 @@ impl Canvas {
             entries: &[
                 BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
                 BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&maps) },
+                BindGroupEntry { binding: 2, resource: sky.as_entire_binding() },
             ],
         });
         let batches = Batches::new(device, &pipelines.batch_layout, 1);
         let uploads = Uploads::default();
-        Self { pipelines, uploads, view, view_group, batches, target: None, drawn: None, redraws: 0 }
+        Self { pipelines, uploads, view, sky, view_group, batches, shade: None, target: None, drawn: None, redraws: 0 }
     }
 
     /// Draws a picture with this many pixels, unless it is the one drawn last. Uploads only data that are new.
@@ -105,15 +111,27 @@ impl Canvas {
         self.uploads.count
     }
 
+    /// Times that shadow maps were drawn so far.
+    pub fn shadow_redraws(&self) -> usize {
+        self.shade.as_ref().map_or(0, |shade| shade.redraws)
+    }
+
     /// Brings to the GPU what the picture needs.
     fn prepare(&mut self, device: &Device, queue: &Queue, size_px: [u32; 2], picture: &Picture) {
         self.uploads.update(device, picture.batches.iter().map(|batch| &batch.what));
-        self.pipelines.make(device, Key::BACKGROUND);
+        if picture.has_shadows() {
+            self.shade.get_or_insert_with(|| Shade::new(device)).draw(device, queue, size_px, picture);
+        }
+        let shadows = self.shade.as_ref().map(Shade::layout);
+        self.pipelines.make(device, Key::background(picture), shadows);
         for batch in &picture.batches {
-            self.pipelines.make(device, Key::new(batch, !picture.cuts.is_empty()));
+            self.pipelines.make(device, Key::new(batch, picture), shadows);
         }
 
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(picture, size_px)));
+        if let Some(sunlight) = &picture.sunlight {
+            queue.write_buffer(&self.sky, 0, bytemuck::bytes_of(&SkyUniform::new(&sunlight.light)));
+        }
         self.batches.grow(device, &self.pipelines.batch_layout, picture.batches.len());
         let mut numbers = vec![0; BATCH_STRIDE * picture.batches.len()];
         for (slot, batch) in numbers.chunks_exact_mut(BATCH_STRIDE).zip(&picture.batches) {
@@ -128,20 +146,19 @@ impl Canvas {
         let (scene, on_top): (Vec<_>, Vec<_>) =
             picture.batches.iter().enumerate().partition(|(_, batch)| !batch.on_top);
         let (opaque, transparent): (Vec<_>, Vec<_>) = scene.into_iter().partition(|(_, batch)| batch.opacity >= 1.0);
-        let has_cuts = !picture.cuts.is_empty();
 
         let is_last = on_top.is_empty();
         let mut pass = target.begin(encoder, Pass::Scene, is_last);
-        self.draw_background(&mut pass);
-        self.draw_batches(&mut pass, opaque.into_iter().chain(transparent), has_cuts);
+        self.draw_background(&mut pass, picture);
+        self.draw_batches(&mut pass, opaque.into_iter().chain(transparent), picture);
         drop(pass);
         if !is_last {
-            self.draw_batches(&mut target.begin(encoder, Pass::OnTop, true), on_top.into_iter(), has_cuts);
+            self.draw_batches(&mut target.begin(encoder, Pass::OnTop, true), on_top.into_iter(), picture);
         }
     }
 
-    fn draw_background(&self, pass: &mut RenderPass<'_>) {
-        let Some(pipeline) = self.pipelines.get(Key::BACKGROUND) else { return };
+    fn draw_background(&self, pass: &mut RenderPass<'_>, picture: &Picture) {
+        let Some(pipeline) = self.pipelines.get(Key::background(picture)) else { return };
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &self.view_group, &[]);
         pass.set_bind_group(1, &self.batches.group, &[0]);
@@ -152,14 +169,17 @@ impl Canvas {
         &self,
         pass: &mut RenderPass<'_>,
         batches: impl Iterator<Item = (usize, &'a Batch)>,
-        has_cuts: bool,
+        picture: &Picture,
     ) {
         pass.set_bind_group(0, &self.view_group, &[]);
         for (number, batch) in batches {
-            let key = Key::new(batch, has_cuts);
+            let key = Key::new(batch, picture);
             let Some(pipeline) = self.pipelines.get(key) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.batches.group, &[(number * BATCH_STRIDE) as u32]);
+            if let Some(shade) = self.shade.as_ref().filter(|_| key.is_sunlit()) {
+                pass.set_bind_group(2, shade.group(), &[]);
+            }
             for part in self.uploads.parts(&batch.what) {
                 pass.set_vertex_buffer(0, part.vertices.slice(..));
                 match self.uploads.rectangles().filter(|_| key.rectangles()) {

@@ -9,6 +9,8 @@ mod canvas;
 mod offscreen;
 mod picture;
 mod pipelines;
+mod shade;
+mod sunlight;
 #[cfg(test)]
 mod tests;
 mod uniforms;
@@ -18,3 +20,4 @@ pub use callback::{callback, install, work_done};
 pub use canvas::Canvas;
 pub use offscreen::{NoAdapter, Offscreen};
 pub use picture::{Ball, Batch, Corner, Cube, Culling, Cut, FaceStyle, Picture, Stroke, Tint, What};
+pub use sunlight::{Shadows, SkyLight, Sunlight};

@@ -9,6 +9,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::sunlight::Sunlight;
 use crate::camera::Camera;
 use crate::colour::Scale;
 
@@ -19,6 +20,8 @@ pub struct Picture {
     pub camera: Camera,
     /// Colours (sRGB) of the background at the top and at the bottom; between them it fades.
     pub background: [[u8; 3]; 2],
+    /// Sun and sky: the sky stands behind the scene instead of the background, and lights [`FaceStyle::Sunlit`] faces.
+    pub sunlight: Option<Sunlight>,
     /// What is cut away of the batches that can be cut: at most [`Picture::MOST_CUTS`], further ones are not drawn.
     pub cuts: Vec<Cut>,
     /// Drawn in this order among those of a kind: first the opaque, then the transparent, then those on top.
@@ -28,6 +31,11 @@ pub struct Picture {
 impl Picture {
     /// Cuts that are heeded.
     pub const MOST_CUTS: usize = 2;
+
+    /// Whether there is a sun and what keeps it off: where [`FaceStyle::Sunlit`] faces are lit by it.
+    pub(super) fn has_shadows(&self) -> bool {
+        self.sunlight.as_ref().is_some_and(|sunlight| sunlight.shadows.is_some())
+    }
 }
 
 /// A half space that is cut away: point p is hidden where `normal . p > offset_m`.
@@ -125,6 +133,9 @@ pub enum FaceStyle {
     /// Lit from the viewer and from above, never black.
     #[default]
     Shaded,
+    /// Lit by the picture's sun and sky, with shadows; as [`FaceStyle::Shaded`] in a picture without them, and where
+    /// values are shown.
+    Sunlit,
     /// The colour as it is: heatmaps, whose colours are to be read off.
     Flat,
     /// The edges alone.
@@ -233,6 +244,7 @@ mod tests {
         let picture = Picture {
             camera: Camera::fitted((Vec3::ZERO, Vec3::ONE), 1.0),
             background: [[0; 3]; 2],
+            sunlight: None,
             cuts: Vec::new(),
             batches: vec![Batch::new(What::Strokes { data: Arc::clone(&data) })],
         };

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use eframe::wgpu::*;
 
-use super::picture::{Ball, Batch, Corner, Cube, FaceStyle, Tint, What};
+use super::picture::{Ball, Batch, Corner, Cube, FaceStyle, Picture, Tint, What};
 use super::upload::StrokeVertex;
 
 /// Samples a pixel: smooth edges of faces, and balls and lines that fade at their edges in any order of drawing.
@@ -18,7 +18,9 @@ pub(super) const DEPTHS: TextureFormat = TextureFormat::Depth32Float;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Shape {
     Background,
+    Sky,
     Faces,
+    Sunlit,
     Edges,
     Balls,
     Cubes,
@@ -26,16 +28,26 @@ enum Shape {
 }
 
 impl Shape {
-    /// Name, source and entry points' stem.
-    fn shader(self) -> (&'static str, &'static str) {
+    /// Name and stem of the entry points, and the sources after `view.wgsl`.
+    fn shader(self) -> (&'static str, &'static [&'static str]) {
+        const SKYLIGHT: &str = include_str!("shaders/skylight.wgsl");
+        const LOOKUP: &str = include_str!("../shadows/shaders/lookup.wgsl");
+        const FACES: &str = include_str!("shaders/faces.wgsl");
         match self {
-            Shape::Background => ("background", include_str!("shaders/background.wgsl")),
-            Shape::Faces => ("faces", include_str!("shaders/faces.wgsl")),
-            Shape::Edges => ("edges", include_str!("shaders/faces.wgsl")),
-            Shape::Balls => ("balls", include_str!("shaders/balls.wgsl")),
-            Shape::Cubes => ("cubes", include_str!("shaders/cubes.wgsl")),
-            Shape::Strokes => ("strokes", include_str!("shaders/strokes.wgsl")),
+            Shape::Background => ("background", &[include_str!("shaders/background.wgsl")]),
+            Shape::Sky => ("sky", &[SKYLIGHT, include_str!("shaders/sky.wgsl")]),
+            Shape::Faces => ("faces", &[FACES]),
+            Shape::Sunlit => ("sunlit", &[FACES, SKYLIGHT, LOOKUP, include_str!("shaders/sunlit.wgsl")]),
+            Shape::Edges => ("edges", &[FACES]),
+            Shape::Balls => ("balls", &[include_str!("shaders/balls.wgsl")]),
+            Shape::Cubes => ("cubes", &[include_str!("shaders/cubes.wgsl")]),
+            Shape::Strokes => ("strokes", &[include_str!("shaders/strokes.wgsl")]),
         }
+    }
+
+    /// Whether it stands behind everything.
+    fn is_background(self) -> bool {
+        matches!(self, Shape::Background | Shape::Sky)
     }
 
     /// A vertex's size and fields, as the shader's input has them.
@@ -48,8 +60,8 @@ impl Shape {
             0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Uint32, 4 => Unorm8x4, 5 => Uint32
         ];
         match self {
-            Shape::Background => None,
-            Shape::Faces | Shape::Edges => Some((size_of::<Corner>(), &CORNER)),
+            Shape::Background | Shape::Sky => None,
+            Shape::Faces | Shape::Sunlit | Shape::Edges => Some((size_of::<Corner>(), &CORNER)),
             Shape::Balls => Some((size_of::<Ball>(), &BALL)),
             Shape::Cubes => Some((size_of::<Cube>(), &CUBE)),
             Shape::Strokes => Some((size_of::<StrokeVertex>(), &STROKE)),
@@ -67,20 +79,29 @@ pub(super) struct Key {
 }
 
 impl Key {
-    /// The background's.
-    pub(super) const BACKGROUND: Self = Self { shape: Shape::Background, scaled: false, cut: false, blended: false };
+    /// The one of what stands behind a picture.
+    pub(super) fn background(picture: &Picture) -> Self {
+        let shape = if picture.sunlight.is_some() { Shape::Sky } else { Shape::Background };
+        Self { shape, scaled: false, cut: false, blended: false }
+    }
 
-    /// A batch's in a picture that has cuts or not.
-    pub(super) fn new(batch: &Batch, has_cuts: bool) -> Self {
+    /// A batch's in its picture.
+    pub(super) fn new(batch: &Batch, picture: &Picture) -> Self {
+        let scaled = matches!(batch.tint, Tint::Scaled(_));
         let shape = match batch.what {
+            What::Faces { style: FaceStyle::Sunlit, .. } if picture.has_shadows() && !scaled => Shape::Sunlit,
             What::Faces { style: FaceStyle::Wireframe, .. } => Shape::Edges,
             What::Faces { .. } => Shape::Faces,
             What::Balls { .. } => Shape::Balls,
             What::Cubes { .. } => Shape::Cubes,
             What::Strokes { .. } => Shape::Strokes,
         };
-        let scaled = matches!(batch.tint, Tint::Scaled(_));
-        Self { shape, scaled, cut: batch.cut && has_cuts, blended: batch.opacity < 1.0 }
+        Self { shape, scaled, cut: batch.cut && !picture.cuts.is_empty(), blended: batch.opacity < 1.0 }
+    }
+
+    /// Whether its shader looks shadows up.
+    pub(super) fn is_sunlit(self) -> bool {
+        self.shape == Shape::Sunlit
     }
 
     /// Whether it draws indexed rectangles.
@@ -93,14 +114,13 @@ impl Key {
 pub(super) struct Pipelines {
     pub(super) view_layout: BindGroupLayout,
     pub(super) batch_layout: BindGroupLayout,
-    layout: PipelineLayout,
     made: HashMap<Key, RenderPipeline>,
 }
 
 impl Pipelines {
     pub(super) fn new(device: &Device) -> Self {
-        let uniform = |has_dynamic_offset| BindGroupLayoutEntry {
-            binding: 0,
+        let uniform = |binding, has_dynamic_offset| BindGroupLayoutEntry {
+            binding,
             visibility: ShaderStages::VERTEX_FRAGMENT,
             ty: BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset, min_binding_size: None },
             count: None,
@@ -118,22 +138,24 @@ impl Pipelines {
         let group = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let view_layout = group("view", &[uniform(false), maps]);
-        let batch_layout = group("batch", &[uniform(true)]);
-        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some("picture"),
-            bind_group_layouts: &[Some(&view_layout), Some(&batch_layout)],
-            immediate_size: 0,
-        });
-        Self { view_layout, batch_layout, layout, made: HashMap::new() }
+        let view_layout = group("view", &[uniform(0, false), maps, uniform(2, false)]);
+        let batch_layout = group("batch", &[uniform(0, true)]);
+        Self { view_layout, batch_layout, made: HashMap::new() }
     }
 
-    /// Makes a pipeline unless it is there.
-    pub(super) fn make(&mut self, device: &Device, key: Key) {
-        if !self.made.contains_key(&key) {
-            let pipeline = pipeline(device, &self.layout, key);
-            self.made.insert(key, pipeline);
+    /// Makes a pipeline unless it is there. A sunlit one reads maps of the layout `shadows`, and is not made without.
+    pub(super) fn make(&mut self, device: &Device, key: Key, shadows: Option<&BindGroupLayout>) {
+        let shadows = shadows.filter(|_| key.is_sunlit());
+        if self.made.contains_key(&key) || shadows.is_some() != key.is_sunlit() {
+            return;
         }
+        let groups: Vec<_> = [&self.view_layout, &self.batch_layout].into_iter().chain(shadows).map(Some).collect();
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("picture"),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        self.made.insert(key, pipeline(device, &layout, key));
     }
 
     /// A pipeline that was made.
@@ -143,8 +165,8 @@ impl Pipelines {
 }
 
 fn pipeline(device: &Device, layout: &PipelineLayout, key: Key) -> RenderPipeline {
-    let (name, source) = key.shape.shader();
-    let source = [include_str!("shaders/view.wgsl"), source].concat();
+    let (name, sources) = key.shape.shader();
+    let source = [include_str!("shaders/view.wgsl")].iter().chain(sources).copied().collect::<String>();
     let module = device
         .create_shader_module(ShaderModuleDescriptor { label: Some(name), source: ShaderSource::Wgsl(source.into()) });
     let constants = [("SCALED", f64::from(u8::from(key.scaled))), ("CUT", f64::from(u8::from(key.cut)))];
@@ -159,7 +181,7 @@ fn pipeline(device: &Device, layout: &PipelineLayout, key: Key) -> RenderPipelin
 
     // Where edges fade, opaque things cover a share of a pixel's samples: no order of drawing is asked for. What is
     // transparent is blended and leaves the depth alone. The picture itself stays opaque.
-    let is_background = key.shape == Shape::Background;
+    let is_background = key.shape.is_background();
     let fades = matches!(key.shape, Shape::Edges | Shape::Balls | Shape::Strokes);
     device.create_render_pipeline(&RenderPipelineDescriptor {
         label: Some(name),

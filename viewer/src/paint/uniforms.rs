@@ -8,6 +8,7 @@ use eframe::wgpu::{
 use glam::Vec2;
 
 use super::picture::{Batch, Culling, FaceStyle, Picture, Tint, What};
+use super::sunlight::SkyLight;
 use crate::colour::{ColourMap, GREY};
 
 /// Steps of a colour map: one more would not be another colour of 8 bits.
@@ -36,6 +37,8 @@ impl ViewUniform {
         let at_target_m = camera.metres_per_px(camera.target_m, size);
         let (perspective, per_px_m) =
             if camera.orthographic { (0.0, at_target_m) } else { (1.0, at_target_m / camera.distance_m) };
+        // Of the picture at a distance of one.
+        let half_high = (0.5 * camera.field_of_view_rad).tan();
         let mut cuts = [[0.0; 4]; Picture::MOST_CUTS];
         for (slot, cut) in cuts.iter_mut().zip(&picture.cuts) {
             *slot = cut.normal.extend(cut.offset_m).to_array();
@@ -44,11 +47,37 @@ impl ViewUniform {
             clip_from_scene: camera.view_projection(size).to_cols_array_2d(),
             eye_m: camera.eye_m().extend(perspective).to_array(),
             forward: camera.forward().extend(per_px_m).to_array(),
-            right: camera.right().extend(0.0).to_array(),
-            up: camera.up().extend(0.0).to_array(),
+            right: camera.right().extend(half_high * size.x / size.y).to_array(),
+            up: camera.up().extend(half_high).to_array(),
             size_px: [size.x, size.y, camera.near_m(), 0.0],
             cuts,
             background: picture.background.map(rgba),
+        }
+    }
+}
+
+/// Sun and sky, as shaders read them.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct SkyUniform {
+    towards_sun: [f32; 4],
+    beam: [f32; 4],
+    ground: [f32; 4],
+    zenith: [f32; 4],
+    perez: [[f32; 4]; 5],
+    harmonics: [[f32; 4]; 9],
+}
+
+impl SkyUniform {
+    pub(super) fn new(light: &SkyLight) -> Self {
+        let with = |[a, b, c]: [f32; 3], d| [a, b, c, d];
+        Self {
+            towards_sun: light.towards_sun.extend(light.disc_radius_rad).to_array(),
+            beam: with(light.beam_klx, light.white_kcd_m2),
+            ground: with(light.ground_kcd_m2, 0.0),
+            zenith: with(light.zenith, 0.0),
+            perez: std::array::from_fn(|letter| with(light.perez.map(|of| of[letter]), 0.0)),
+            harmonics: light.harmonics_klx.map(|rgb| with(rgb, 0.0)),
         }
     }
 }
@@ -74,7 +103,9 @@ impl BatchUniform {
             }
         };
         let (culling, shaded, sizes) = match &batch.what {
-            What::Faces { style, culling, .. } => (*culling, *style == FaceStyle::Shaded, [0.0; 4]),
+            What::Faces { style, culling, .. } => {
+                (*culling, matches!(style, FaceStyle::Shaded | FaceStyle::Sunlit), [0.0; 4])
+            }
             What::Balls { least_px, most_px, .. } => (Culling::None, true, [*least_px, *most_px, 0.0, 0.0]),
             What::Cubes { edge_m, culling, .. } => (*culling, true, [*edge_m, 0.0, 0.0, 0.0]),
             What::Strokes { .. } => (Culling::None, false, [0.0; 4]),

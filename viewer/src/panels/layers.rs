@@ -1,6 +1,6 @@
 //! Which layers are on, and how each looks.
 
-use super::{choice, decimals, row, rows, scrolled, section};
+use super::{choice, decimals, outdoors, row, rows, scrolled, section};
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Section, Slice, VoxelShow};
 use crate::outdoors::QUANTITIES;
 use crate::state::State;
@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, state: &mut State) {
 }
 
 /// A switch, and its options in rows below while it is on.
-fn layer(ui: &mut Ui, on: &mut bool, name: &str, says: &str, options: impl FnOnce(&mut Ui)) {
+pub(super) fn layer(ui: &mut Ui, on: &mut bool, name: &str, says: &str, options: impl FnOnce(&mut Ui)) {
     ui.checkbox(on, name).on_hover_text(says);
     if *on {
         indented(ui, |ui| rows(ui, name, options));
@@ -150,6 +150,7 @@ fn voxels(ui: &mut Ui, layers: &mut Layers) {
 
 fn sky(ui: &mut Ui, layers: &mut Layers) {
     ui.checkbox(&mut layers.sun_path, "Sun path").on_hover_text("The sky dome with the sun's way over it");
+    outdoors::light::show(ui, layers);
     ui.checkbox(&mut layers.per_pixel, "Exposure per pixel")
         .on_hover_text("Sun and sky for each pixel of the view instead of on the faces");
 }

@@ -7,6 +7,7 @@ pub use overlay::words;
 
 use crate::controls::{self, Gesture, Touch};
 use crate::draw::{Drawer, Wake, bounds_m, longest_m};
+use crate::outdoors::facade::Facade;
 use crate::outdoors::shown as outdoors;
 use crate::paint;
 use crate::panels::scene::asked_lights;
@@ -137,6 +138,7 @@ impl View {
             focus_at(state, at_px, frame.size_px);
         } else if response.clicked() && gesture(Touch::Click(PointerButton::Primary)) == Some(Gesture::Pick) {
             state.pick(picked_at(state, at_px, frame.size_px, true));
+            state.facade = facade_at(state, at_px, frame.size_px);
         }
     }
 
@@ -213,6 +215,18 @@ fn picked_at(state: &State, at_px: Vec2, size_px: Vec2, parts: bool) -> Option<P
         pick::part_of(&state.results, triangle).map(Picked::Part)
     };
     thing.or_else(|| part().filter(|_| parts && state.layers.mesh))
+}
+
+/// The face of the mesh under the pointer, of a scene under a sun, where nothing else is picked but the part that it is of.
+fn facade_at(state: &State, at_px: Vec2, size_px: Vec2) -> Option<Facade> {
+    let is_mesh = state.layers.mesh && matches!(state.picked, None | Some(Picked::Part(_)));
+    state.outdoors.now.as_ref().filter(|_| is_mesh)?;
+    let hidden = |at_m, triangle, direction| is_hidden(state, at_m, triangle, direction);
+    let (at_m, triangle) = pick::surface(&state.results, &state.camera, at_px, size_px, hidden)?;
+    let [a, b, c] = state.results.scene.as_ref()?.mesh.corners_m(triangle)?;
+    let front = (b - a).cross(c - a).try_normalize()?;
+    let (_, direction) = state.camera.ray(at_px, size_px);
+    Some(Facade { at_m, normal: if front.dot(direction) > 0.0 { -front } else { front } })
 }
 
 /// Looks at what lies under the pointer.

@@ -9,12 +9,13 @@ use lightvein::daylight::Quantity;
 use lightvein::job::{Cancel, Quiet};
 use lightvein::scene::Scene;
 use lightvein_viewer::camera::Camera;
-use lightvein_viewer::layers::{Layers, MeshColour};
+use lightvein_viewer::layers::{Layers, MeshColour, Shadow};
 use lightvein_viewer::measure::Measure;
 use lightvein_viewer::outdoors::compute::{Question, compute};
 use lightvein_viewer::outdoors::{OutdoorRequest, OutdoorResults, draw, follow_view, seen_by, shown};
 use lightvein_viewer::paint::{Batch, Culling, FaceStyle, Picture, Tint, What};
 use lightvein_viewer::panels::{map, outdoors};
+use lightvein_viewer::shadows::Method;
 use lightvein_viewer::state::{Action, Kept, State};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -184,6 +185,28 @@ fn a_quantity_is_chosen_and_shown_on_faces_or_by_pixel() {
 }
 
 #[test]
+fn a_shadow_method_is_chosen_with_its_size_and_its_layers() {
+    let mut harness = panel(state());
+    assert!(harness.query_by_label("Shadow method").is_none());
+    harness.get_by_role_and_label(Role::CheckBox, "Sunlight and shadows").click();
+    harness.run();
+    assert!(harness.state().layers.shadows && harness.state().layers.shadow == Shadow::by(Method::Hsm));
+    harness.get_by_role_and_label(Role::Slider, "Shadow layers");
+    harness.get_by_role_and_label(Role::ComboBox, "Shadow method").click();
+    harness.run();
+    harness.get_by_label("Variance shadow map").click();
+    harness.run();
+    assert!(harness.query_by_label("Shadow layers").is_none(), "it has one");
+    harness.get_by_role_and_label(Role::ComboBox, "Map size").click();
+    harness.run();
+    harness.get_by_label("512").click();
+    harness.run();
+    let wanted = Shadow { resolution: 512, ..Shadow::by(Method::Vsm) };
+    assert_eq!((harness.state().layers.shadow, wanted.settings()), (wanted, Method::Vsm.settings(512, 1)));
+    assert_eq!(harness.state().history.can(), [false, false], "a look is no step to undo");
+}
+
+#[test]
 fn a_weather_file_is_asked_for_and_taken() {
     let mut harness = panel(state());
     harness.get_by_label("Choose").click();
@@ -285,7 +308,8 @@ fn exposure_is_drawn_where_it_belongs() {
     let what = What::Faces { data: corners, style: FaceStyle::Flat, culling: Culling::None };
     let exposed = Batch { tint, ..Batch::new(what) };
     let mut drawn = |batches: Vec<Batch>| {
-        let picture = Picture { camera: state.camera, background: [[0; 3]; 2], cuts: Vec::new(), batches };
+        let picture =
+            Picture { camera: state.camera, background: [[0; 3]; 2], sunlight: None, cuts: Vec::new(), batches };
         offscreen.render_picture(&picture, [320, 240]).expect("a picture")
     };
     let picture = drawn(vec![exposed.clone()]);

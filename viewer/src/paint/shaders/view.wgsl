@@ -8,6 +8,7 @@ struct View {
     eye_m: vec4<f32>,
     // Gaze; w: metres a pixel, at a depth of one metre in perspective and everywhere in a parallel projection.
     forward: vec4<f32>,
+    // To the right and upwards; w: half of the picture's width and height at a distance of one, in perspective.
     right: vec4<f32>,
     up: vec4<f32>,
     // Width, height and the nearest depth drawn in metres.

@@ -1,6 +1,7 @@
 //! What is seen: pictures of known scenes, pixel by pixel.
 
 mod shown;
+mod sunlit;
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 
@@ -39,7 +40,7 @@ fn camera() -> Camera {
 }
 
 fn picture(batches: Vec<Batch>) -> Picture {
-    Picture { camera: camera(), background: [BACKGROUND; 2], cuts: Vec::new(), batches }
+    Picture { camera: camera(), background: [BACKGROUND; 2], sunlight: None, cuts: Vec::new(), batches }
 }
 
 /// An upright square wall through a point, its front to the south where the camera is.

@@ -122,3 +122,16 @@ pub fn part(ui: &mut Ui, state: &State, index: usize) {
         }
     });
 }
+
+/// The face that was touched: how it stands, and how the sun meets it at the shown moment.
+pub fn facade(ui: &mut Ui, state: &State) {
+    let (Some(facade), Some(scene)) = (&state.facade, &state.results.scene) else { return };
+    let (Some(now), Some(sky)) = (&state.outdoors.now, &state.results.outdoors.sky) else { return };
+    rows(ui, "facade", |ui| {
+        told(ui, "Touched at", position(scene, facade.at_m));
+        for (name, value) in facade.rows(now.sun, sky.outdoors.north_rad) {
+            told(ui, name, value);
+        }
+        told(ui, "At", now.moment.strftime("%-d %b, %H:%M").to_string());
+    });
+}

@@ -3,6 +3,7 @@
 mod facts;
 mod methods;
 
+pub use facts::facade;
 pub use methods::seconds_text;
 
 use super::section;
@@ -26,17 +27,27 @@ const LISTED: usize = 50;
 
 /// Shows what is picked.
 pub fn show(ui: &mut Ui, state: &mut State) {
-    let Some(picked) = state.picked else {
-        return super::nothing(ui, state, "Click a node, a sensor, a light or a part in the view.");
-    };
+    if state.picked.is_none() && state.facade.is_none() {
+        return super::nothing(
+            ui,
+            state,
+            "Click a node, a sensor, a light or a part in the view; outdoors a wall, for the sun on it.",
+        );
+    }
     egui::ScrollArea::both().id_salt("inspector").auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);
-        match picked {
-            Picked::Node(node) => facts::node(ui, state, node),
-            Picked::Sensor(sensor) => facts::sensor(ui, state, sensor),
-            Picked::Light(light) => facts::light(ui, state, light),
-            Picked::Part(part) => facts::part(ui, state, part),
+        match state.picked {
+            Some(Picked::Node(node)) => facts::node(ui, state, node),
+            Some(Picked::Sensor(sensor)) => facts::sensor(ui, state, sensor),
+            Some(Picked::Light(light)) => facts::light(ui, state, light),
+            Some(Picked::Part(part)) => facts::part(ui, state, part),
+            None => {}
         }
+        if state.facade.is_some() {
+            ui.heading("Face");
+            facade(ui, state);
+        }
+        let Some(picked) = state.picked else { return };
         if matches!(picked, Picked::Node(_) | Picked::Sensor(_)) {
             if state.results.estimate.is_some() {
                 section(ui, "Methods", true, |ui| methods::show(ui, state, picked));

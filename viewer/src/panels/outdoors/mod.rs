@@ -1,5 +1,6 @@
 //! Sun and sky: where and when, what is shown of the exposure, and what the period brings.
 
+pub mod light;
 mod period;
 mod place;
 mod time;
@@ -38,6 +39,8 @@ pub fn show(ui: &mut Ui, state: &mut State) {
     }
     scrolled(ui, "outdoors", |ui| {
         section(ui, "Date and time", true, |ui| time::show(ui, state));
+        section(ui, "Light", true, |ui| light::show(ui, &mut state.layers));
+        picked(ui, state);
         section(ui, "Exposure", true, |ui| exposure(ui, state));
         section(ui, "Period and air", true, |ui| period::show(ui, state));
         section(ui, "Place", true, |ui| place::show(ui, state));
@@ -45,10 +48,17 @@ pub fn show(ui: &mut Ui, state: &mut State) {
         let stop = ui.button("Leave sun and sky out").on_hover_text("Nothing is computed of them any more");
         if stop.clicked() {
             state.change(gesture(&stop), |request| request.outdoors = None);
-            state.layers.sun_path = false;
+            (state.layers.sun_path, state.layers.shadows, state.facade) = (false, false, None);
             show_exposure(state, Shown::Nowhere);
         }
     });
+}
+
+/// How the sun meets the face that was picked.
+fn picked(ui: &mut Ui, state: &State) {
+    if state.facade.is_some() {
+        section(ui, "Picked face", true, |ui| super::inspector::facade(ui, state));
+    }
 }
 
 /// Asks whether a scene is to have sun and sky.

@@ -4,6 +4,7 @@ mod open;
 mod parts;
 mod picture;
 mod run;
+mod sunlight;
 mod touch;
 
 use egui::accesskit::Role;
