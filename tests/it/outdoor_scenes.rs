@@ -1,6 +1,6 @@
 //! The generated scenes under the sky: meshes, sensors and the tables beside them, which are Radiance's.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightvein::job::{Cancel, Quiet};
 use lightvein::rays::Rays;
 use lightvein::scene::Scene;
@@ -85,9 +85,11 @@ fn outdoor_references_are_of_their_sensors_and_add_up() {
 /// The example that hybrid shadow maps were published with: the nearest object 10 m from the camera, the farthest 380 m.
 #[test]
 fn the_street_is_in_view_from_10_m_to_380_m() {
-    let rays = Rays::new(&outdoor("street"));
+    let street = outdoor("street");
+    let rays = Rays::new(&street);
     // Level, to the north; 40 degrees from the lower edge to the upper one, 4:3.
-    let (eye_m, slope) = (Vec3::new(0.0, -165.0, 3.64), 20f32.to_radians().tan());
+    let eye_m = (DVec3::new(0.0, -165.0, 3.64) - street.origin_m).as_vec3();
+    let slope = 20f32.to_radians().tan();
     let mut depths_m = Vec::new();
     for y in 0..240 {
         for x in 0..320 {
