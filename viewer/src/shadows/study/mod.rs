@@ -1,7 +1,7 @@
 //! What does each shadow method cost, and how far off is it? Frames of one view by many settings, timed and held to the truth.
 //!
 //! A row's time is the median of whole frames (maps, and the view lit by them), each waited for, the first one left out: it
-//! makes textures and pipelines. Rows get a share of a budget; slow ones take a few frames and no more. Errors are those of
+//! makes textures and pipelines. Rows share a budget evenly; slow ones end with fewer frames. Errors are those of
 //! [`super::errors`].
 //!
 //! Limits: times are of the machine and whatever else it does; on a software driver they go by texels and triangles and say
@@ -21,9 +21,8 @@ use summary::{Summary, largest_hybrids, summary};
 /// Timed frames of a row, least and most.
 const FRAMES: [usize; 2] = [5, 100];
 
-/// A row that takes longer than this ends with fewer: frames so slow vary little.
-const SLOW: Duration = Duration::from_millis(600);
-const SLOW_FRAMES: usize = 3;
+/// A row that has taken this many times its share of the budget ends with three frames, and with twice that after one.
+const LATE: u32 = 2;
 
 /// How often a map's side is chosen anew, until it takes as much memory as it should.
 const MOST_SIDES: usize = 3;
@@ -34,16 +33,16 @@ const MOST_LAYERS_BY_MEMORY: usize = 8;
 /// How long a study may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// A row that has its least number of frames ends after this.
+    /// No row that has frames enough takes longer.
     pub row: Duration,
-    /// Rows get less as this is used up.
+    /// Of all rows, evenly shared: what is left of it among those that are left.
     pub all: Duration,
 }
 
 impl Default for Budget {
     /// For a default run within 45 s on two cores without a graphics card, truth and pictures included.
     fn default() -> Self {
-        Self { row: Duration::from_millis(300), all: Duration::from_secs(25) }
+        Self { row: Duration::from_millis(300), all: Duration::from_secs(30) }
     }
 }
 
@@ -93,7 +92,7 @@ pub fn measure(
     let mut add = |findings: &mut Findings, studio: &mut Studio, ask: Ask, left: usize| -> Result<Row> {
         cancel.check()?;
         let share = budget.all.saturating_sub(begun.elapsed()) / left.max(1) as u32;
-        let (row, lit) = row(studio, view, judge, ask, budget.row.min(share))?;
+        let (row, lit) = row(studio, view, judge, ask, [share, budget.row])?;
         hear(&row, [findings.rows.len() + 1, findings.rows.len() + left]);
         findings.add(row, lit);
         Ok(row)
@@ -149,12 +148,18 @@ fn by_memory(rows: &[Row]) -> Vec<(Ask, u64)> {
     found
 }
 
-/// One row, and what it shows.
-fn row(studio: &mut Studio, view: &View, judge: &Judge, ask: Ask, time: Duration) -> Result<(Row, Vec<Option<Lit>>)> {
+/// One row, and what it shows; `times` are its share of the budget, and the most that it takes without need.
+fn row(
+    studio: &mut Studio,
+    view: &View,
+    judge: &Judge,
+    ask: Ask,
+    times: [Duration; 2],
+) -> Result<(Row, Vec<Option<Lit>>)> {
     studio.frame(view, &ask.settings)?;
     let begun = Instant::now();
     let mut frames_ms = Vec::new();
-    while goes_on(frames_ms.len(), begun.elapsed(), time) {
+    while goes_on(frames_ms.len(), begun.elapsed(), times) {
         let frame = Instant::now();
         studio.frame(view, &ask.settings)?;
         frames_ms.push(1e3 * frame.elapsed().as_secs_f64());
@@ -172,10 +177,14 @@ fn row(studio: &mut Studio, view: &View, judge: &Judge, ask: Ask, time: Duration
 }
 
 /// Whether a row that has so many frames after so long takes another.
-fn goes_on(frames: usize, elapsed: Duration, time: Duration) -> bool {
+fn goes_on(frames: usize, elapsed: Duration, [share, longest]: [Duration; 2]) -> bool {
     let [least, most] = FRAMES;
-    let least = if elapsed > SLOW { SLOW_FRAMES } else { least };
-    frames < least || (frames < most && elapsed < time)
+    let least = match elapsed {
+        elapsed if elapsed < LATE * share => least,
+        elapsed if elapsed < 2 * LATE * share => 3,
+        _ => 1,
+    };
+    frames < least || (frames < most && elapsed < share.min(longest))
 }
 
 /// The middle of some times; not a number where there is none.
@@ -200,14 +209,15 @@ mod tests {
     }
 
     #[test]
-    fn rows_have_enough_frames_and_slow_ones_no_more_than_a_few() {
-        let time = Duration::from_millis(400);
-        let frames = |frame_ms: u32| {
-            let goes_on =
-                |&count: &usize| goes_on(count, Duration::from_millis(u64::from(frame_ms)) * count as u32, time);
-            (0..).find(|count| !goes_on(count))
+    fn rows_have_enough_frames_and_slow_ones_fewer() {
+        let frames = |share_ms: u64, frame_ms: u64| {
+            let times = [share_ms, 300].map(Duration::from_millis);
+            let goes_on = |&count: &usize| goes_on(count, Duration::from_millis(frame_ms) * count as u32, times);
+            (0..).find(|count| !goes_on(count)).unwrap()
         };
-        assert_eq!([1, 10, 100, 2000].map(frames), [Some(100), Some(40), Some(5), Some(3)]);
+        // Of a share of 400 ms: the most, as many as 300 ms hold, five, four, three and one.
+        assert_eq!([1, 10, 100, 250, 500, 2000].map(|frame_ms| frames(400, frame_ms)), [100, 30, 5, 4, 3, 1]);
+        assert_eq!(frames(0, 1), 1, "with nothing left");
     }
 
     #[test]
