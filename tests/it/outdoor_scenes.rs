@@ -1,6 +1,6 @@
 //! The generated scenes under the sky: meshes, sensors and the tables beside them, which are Radiance's.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightvein::job::{Cancel, Quiet};
 use lightvein::rays::Rays;
 use lightvein::scene::Scene;
@@ -80,6 +80,28 @@ fn outdoor_references_are_of_their_sensors_and_add_up() {
             assert!((0.0..1.01).contains(&svf[0]) && (svf[0] > 0.0 || sky < 2.0), "{name}: {id}");
         }
     }
+}
+
+/// The example that hybrid shadow maps were published with: the nearest object 10 m from the camera, the farthest 380 m.
+#[test]
+fn the_street_is_in_view_from_10_m_to_380_m() {
+    let street = outdoor("street");
+    let rays = Rays::new(&street);
+    // Level, to the north; 40 degrees from the lower edge to the upper one, 4:3.
+    let eye_m = (DVec3::new(0.0, -165.0, 3.64) - street.origin_m).as_vec3();
+    let slope = 20f32.to_radians().tan();
+    let mut depths_m = Vec::new();
+    for y in 0..240 {
+        for x in 0..320 {
+            let [right, up] =
+                [(x as f32 + 0.5) / 120.0 - 4.0 / 3.0, 1.0 - (y as f32 + 0.5) / 120.0].map(|at| at * slope);
+            let direction = Vec3::new(right, 1.0, up).normalize();
+            depths_m.extend(rays.closest(eye_m, direction, f32::INFINITY).map(|hit| hit.distance_m * direction.y));
+        }
+    }
+    let nearest_m = depths_m.iter().copied().fold(f32::INFINITY, f32::min);
+    let farthest_m = depths_m.iter().copied().fold(0.0, f32::max);
+    assert!((nearest_m - 10.0).abs() < 0.01 && (farthest_m - 380.0).abs() < 0.01, "{nearest_m} m to {farthest_m} m");
 }
 
 /// Sky view factors in a well 10 m wide and 10 m deep: closed forms, worked out apart; on its walls and before a wall of

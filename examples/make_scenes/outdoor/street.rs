@@ -64,7 +64,7 @@ pub fn street() -> Result<Outdoor, String> {
         normal.z > 0.9 && p.z == 0.0 && p.x.abs() < HALF_WIDTH_M
     })?;
     sensors.extend(scatter(&mesh, &mesh, &mut dice, "facade", 40, |p, normal| {
-        normal.z.abs() < 0.1 && p.z > 0.1 && p.x.abs() < HALF_WIDTH_M + 2.0
+        normal.z.abs() < 0.1 && p.z > 0.1 && p.x.abs() < HALF_WIDTH_M + 2.0 && p.y.abs() < HALF_M[1] - 1.0
     })?);
     sensors.extend(scatter(&mesh, &mesh, &mut dice, "roof", 20, |p, normal| normal.z > 0.1 && p.z > 6.0)?);
     Ok(Outdoor {

@@ -218,9 +218,7 @@ fn measured(
     // On a terminal the line is written anew; elsewhere a line a row.
     let end = if std::io::stderr().is_terminal() { "\x1b[K\r" } else { "\n" };
     let mut hear = |row: &Row, [number, of]: [usize; 2]| {
-        let settings = &row.ask.settings;
-        let (name, side, layers) = (row.ask.name(), settings.resolution, settings.layers);
-        eprint!("{number} of {of}: {name}, {side}, {layers} layers: {:.1} ms a frame{end}", row.frame_ms);
+        eprint!("{number} of {of}: {}: {:.1} ms a frame{end}", row.ask.words(), row.frame_ms);
     };
     let findings = measure(studio, &setting.view, &judge, &asks(&extent), &Budget::default(), cancel, &mut hear)?;
     if end != "\n" {

@@ -2,8 +2,9 @@
 //!
 //! A pixel counts where both see something, it faces the sun, and both see it at the same depth within 1%: along silhouettes a
 //! ray through the pixel's middle and the card's rasteriser may see different things, which is no fault of a shadow.
-//! Light bleeding and acne are read well inside shadow and light, where neither a map's resolution nor the sun's extent
-//! explains an error.
+//! Light bleeding and acne are read well inside shadow and light, three pixels from any edge, where the sun's extent explains no
+//! error. Texels that are wider than that still do: what a plain map shows there is theirs, and what others show above it
+//! is bleeding.
 
 use super::Lit;
 use super::truth::{Reached, Truth};
@@ -134,6 +135,7 @@ impl Sums {
 mod tests {
     use super::super::truth::Seen;
     use super::*;
+    use glam::Vec3;
 
     const SIZE_PX: [u32; 2] = [20, 10];
 
@@ -141,7 +143,7 @@ mod tests {
     fn halves() -> Truth {
         let pixel = |at: usize| {
             let share = if at % 20 < 10 { 0.0 } else { 1.0 };
-            Some(Seen { depth_m: 10.0, cosine: 1.0, sun: Some(Reached { hard: share, disc: share }) })
+            Some(Seen { depth_m: 10.0, normal: Vec3::Z, cosine: 1.0, sun: Some(Reached { hard: share, disc: share }) })
         };
         Truth { size_px: SIZE_PX, pixels: (0..200).map(pixel).collect() }
     }
@@ -199,7 +201,7 @@ mod tests {
         lit[1] = Some(Lit { share: 1.0, depth_m: 12.0 });
         let mut truth = halves();
         truth.pixels[2] = None;
-        truth.pixels[3] = Some(Seen { depth_m: 10.0, cosine: -1.0, sun: None });
+        truth.pixels[3] = Some(Seen { depth_m: 10.0, normal: Vec3::Z, cosine: -1.0, sun: None });
         let found = Judge::new(&truth).errors(&lit).unwrap();
         assert_eq!((found.counted, found.left_out, found.wrong), (196, 2, 0.0));
         assert_eq!(Judge::new(&truth).errors(&[]), None);

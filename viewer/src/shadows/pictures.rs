@@ -5,10 +5,13 @@
 
 use super::Lit;
 use super::truth::{Reached, Seen, Truth};
+use glam::Vec3;
 use image::{Rgb, Rgba, RgbaImage};
 
-/// Of the brightest grey, where no sun reaches.
+/// Of the brightest grey, where no sun reaches; and how much of that goes by where a surface looks, so that shaded ones are told
+/// apart.
 const SHADED: f32 = 0.25;
+const BY_NORMAL: Vec3 = Vec3::new(0.05, 0.09, 0.07);
 
 /// How far the truth is dimmed beneath a difference.
 const DIMMED: f32 = 0.5;
@@ -68,9 +71,8 @@ fn shown(lit: &[Option<Lit>], at: usize, seen: &Seen) -> Option<f32> {
 
 /// The grey of a surface that gets that share of the sun.
 fn grey(seen: &Seen, share: f32) -> Rgb<u8> {
-    // Sides that face away are told apart by how far they do.
-    let away = 0.3 * SHADED * seen.cosine.min(0.0);
-    let light = SHADED + away + (1.0 - SHADED) * share * seen.cosine.max(0.0);
+    let shaded = SHADED + BY_NORMAL.dot(seen.normal);
+    let light = shaded + (1.0 - shaded) * share * seen.cosine.max(0.0);
     Rgb([(255.0 * light.clamp(0.0, 1.0).powf(1.0 / 2.2)) as u8; 3])
 }
 
@@ -88,7 +90,8 @@ mod tests {
     use super::*;
 
     fn truth() -> Truth {
-        let seen = |hard| Some(Seen { depth_m: 1.0, cosine: 1.0, sun: Some(Reached { hard, disc: 0.5 }) });
+        let seen =
+            |hard| Some(Seen { depth_m: 1.0, normal: Vec3::Z, cosine: 1.0, sun: Some(Reached { hard, disc: 0.5 }) });
         Truth { size_px: [4, 1], pixels: vec![None, seen(0.0), seen(1.0), seen(1.0)] }
     }
 

@@ -80,15 +80,11 @@ fn claims(text: &mut String, findings: &Findings) {
         let [its, others] = found.errors;
         let _ = writeln!(
             text,
-            "  {:<6}{} {} layers {} ({:.1} MB) {its:.4}, {} {} layers {} ({:.1} MB) {others:.4}: {}",
+            "  {:<6}{} ({:.1} MB) {its:.4}; {} ({:.1} MB) {others:.4}: {}",
             found.by.name(),
-            hybrid.ask.name(),
-            hybrid.ask.settings.layers,
-            hybrid.ask.settings.resolution,
+            hybrid.ask.words(),
             hybrid.bytes as f64 / MB,
-            other.ask.name(),
-            other.ask.settings.layers,
-            other.ask.settings.resolution,
+            other.ask.words(),
             other.bytes as f64 / MB,
             if found.holds() { "less" } else { "not less" }
         );
@@ -99,11 +95,9 @@ fn claims(text: &mut String, findings: &Findings) {
         let within = time.iter().filter(|found| found.holds()).count();
         let _ = writeln!(
             text,
-            "time over VSM's times layers: at most {:.2} ({}, {} layers, {}); {within} of {} rows within {MOST_TIMES_VSM}",
+            "time over VSM's times layers: at most {:.2} ({}); {within} of {} rows within {MOST_TIMES_VSM}",
             found.ratio,
-            row.ask.name(),
-            row.ask.settings.layers,
-            row.ask.settings.resolution,
+            row.ask.words(),
             time.len()
         );
     }

@@ -40,7 +40,9 @@ pub struct Truth {
 pub struct Seen {
     /// How far along the gaze, metres.
     pub depth_m: f32,
-    /// Cosine of the sun's direction on the side that is seen; 0 and less where it faces away.
+    /// Of the side that is seen, of length one.
+    pub normal: Vec3,
+    /// Cosine of the sun's direction on that side; 0 and less where it faces away.
     pub cosine: f32,
     /// What it gets of the sun; `None` where it faces away, which needs no map to tell.
     pub sun: Option<Reached>,
@@ -90,7 +92,7 @@ fn seen(rays: &Rays, view: &View, disc: &Places, at_px: Vec2) -> Option<Seen> {
         let shares = disc.directions.iter().filter(|(direction, _)| reaches(*direction)).map(|(_, share)| share);
         Reached { hard: f32::from(u8::from(reaches(view.towards_sun))), disc: shares.sum::<f32>().min(1.0) }
     });
-    Some(Seen { depth_m: view.camera.depth_m(at_m), cosine, sun })
+    Some(Seen { depth_m: view.camera.depth_m(at_m), normal, cosine, sun })
 }
 
 /// A scene of these triangles and nothing else.
@@ -266,7 +268,8 @@ mod tests {
     #[test]
     fn inside_is_three_pixels_from_any_edge() {
         let size_px = [12, 9];
-        let sun = |disc| Some(Seen { depth_m: 1.0, cosine: 1.0, sun: Some(Reached { hard: 0.0, disc }) });
+        let sun =
+            |disc| Some(Seen { depth_m: 1.0, normal: Vec3::Z, cosine: 1.0, sun: Some(Reached { hard: 0.0, disc }) });
         let mut truth = Truth { size_px, pixels: vec![sun(0.0); 12 * 9] };
         let inside = |truth: &Truth| -> Vec<usize> {
             let [shadow, light] = truth.inside();

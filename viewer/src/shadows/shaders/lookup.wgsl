@@ -84,10 +84,11 @@ fn plane_slope(clip_from_scene: mat4x4<f32>, normal: vec3<f32>) -> vec2<f32> {
 // Cosine of the angle to the sun beyond which planes are not followed: 89 degrees.
 const GRAZING: f32 = -0.0175;
 
-// One comparison, with the plane's depth at the middle of the texel.
+// One comparison, with the plane's depth at the middle of the texel. Only where the plane comes nearer to the sun: where it
+// goes on away from it, it may do so below a ground on which the surface stands.
 fn sun_by_texel(place: vec4<u32>, at: vec2<f32>, depth: f32, slope: vec2<f32>) -> f32 {
     let texel = min(floor(at * f32(place.z)), vec2<f32>(f32(place.z - 1u)));
-    let here = depth + dot(slope, texel + 0.5 - at * f32(place.z));
+    let here = depth + min(dot(slope, texel + 0.5 - at * f32(place.z)), 0.0);
     return select(0.0, 1.0, here <= textureLoad(shadow_depths, vec2<i32>(texel), place.y, 0));
 }
 
@@ -105,9 +106,9 @@ fn sun_by_neighbours(place: vec4<u32>, at: vec2<f32>, depth: f32, slope: vec2<f3
             // The corner that four texels share, and the plane's depth at their middles; counter-clockwise from the lower left.
             let corner = first + vec2<f32>(f32(x), f32(y)) * 2.0;
             let near = vec2<f32>(-0.5) + corner - at * size;
-            let here = vec4<f32>(depth)
-                + slope.x * vec4<f32>(near.x, near.x + 1.0, near.x + 1.0, near.x)
+            let risen = slope.x * vec4<f32>(near.x, near.x + 1.0, near.x + 1.0, near.x)
                 + slope.y * vec4<f32>(near.y + 1.0, near.y + 1.0, near.y, near.y);
+            let here = depth + min(risen, vec4<f32>(0.0));
             let map = textureGather(shadow_depths, shadow_texels, corner / size, i32(place.y));
             let lit = select(vec4<f32>(0.0), vec4<f32>(1.0), here <= map);
             let across = vec2<f32>(low[x].x, high[x].x);

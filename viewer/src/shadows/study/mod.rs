@@ -21,6 +21,10 @@ use summary::{Summary, largest_hybrids, summary};
 /// Timed frames of a row, least and most.
 const FRAMES: [usize; 2] = [5, 100];
 
+/// A row that takes longer than this ends with fewer: frames so slow vary little.
+const SLOW: Duration = Duration::from_millis(600);
+const SLOW_FRAMES: usize = 3;
+
 /// How often a map's side is chosen anew, until it takes as much memory as it should.
 const MOST_SIDES: usize = 3;
 
@@ -39,7 +43,7 @@ pub struct Budget {
 impl Default for Budget {
     /// For a default run within 45 s on two cores without a graphics card, truth and pictures included.
     fn default() -> Self {
-        Self { row: Duration::from_millis(400), all: Duration::from_secs(30) }
+        Self { row: Duration::from_millis(300), all: Duration::from_secs(25) }
     }
 }
 
@@ -150,8 +154,7 @@ fn row(studio: &mut Studio, view: &View, judge: &Judge, ask: Ask, time: Duration
     studio.frame(view, &ask.settings)?;
     let begun = Instant::now();
     let mut frames_ms = Vec::new();
-    let [least, most] = FRAMES;
-    while frames_ms.len() < least || (frames_ms.len() < most && begun.elapsed() < time) {
+    while goes_on(frames_ms.len(), begun.elapsed(), time) {
         let frame = Instant::now();
         studio.frame(view, &ask.settings)?;
         frames_ms.push(1e3 * frame.elapsed().as_secs_f64());
@@ -166,6 +169,13 @@ fn row(studio: &mut Studio, view: &View, judge: &Judge, ask: Ask, time: Duration
         errors: judge.errors(&lit),
     };
     Ok((row, lit))
+}
+
+/// Whether a row that has so many frames after so long takes another.
+fn goes_on(frames: usize, elapsed: Duration, time: Duration) -> bool {
+    let [least, most] = FRAMES;
+    let least = if elapsed > SLOW { SLOW_FRAMES } else { least };
+    frames < least || (frames < most && elapsed < time)
 }
 
 /// The middle of some times; not a number where there is none.
@@ -187,6 +197,17 @@ mod tests {
     fn row(ask: Ask, hard: f64, bytes: u64) -> Row {
         let errors = Errors { counted: 1, left_out: 0, wrong: 0.0, hard, disc: hard, bleeding: None, acne: None };
         Row { ask, layers: 1, bytes, frame_ms: 1.0, frames: 5, errors: Some(errors) }
+    }
+
+    #[test]
+    fn rows_have_enough_frames_and_slow_ones_no_more_than_a_few() {
+        let time = Duration::from_millis(400);
+        let frames = |frame_ms: u32| {
+            let goes_on =
+                |&count: &usize| goes_on(count, Duration::from_millis(u64::from(frame_ms)) * count as u32, time);
+            (0..).find(|count| !goes_on(count))
+        };
+        assert_eq!([1, 10, 100, 2000].map(frames), [Some(100), Some(40), Some(5), Some(3)]);
     }
 
     #[test]

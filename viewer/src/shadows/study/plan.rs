@@ -99,6 +99,13 @@ impl Ask {
             variant => format!("{}, {}", self.method.name(), variant.name()),
         }
     }
+
+    /// The same with its size, in words.
+    pub fn words(&self) -> String {
+        let Settings { resolution, layers, .. } = self.settings;
+        let s = if layers == 1 { "" } else { "s" };
+        format!("{}, {layers} layer{s} of {resolution}", self.name())
+    }
 }
 
 /// All rows of a table, method by method, the small maps first; without those that memory decides on ([`as_large_as`]).
