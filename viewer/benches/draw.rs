@@ -8,9 +8,16 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{Vec2, Vec3};
+use jiff::civil::date;
+use lightvein::scene::Site;
+use lightvein::sky::site::Outdoors;
 use lightvein_viewer::camera::Camera;
 use lightvein_viewer::colour::{ColourMap, Scale};
-use lightvein_viewer::paint::{Ball, Batch, Corner, Culling, Cut, FaceStyle, Offscreen, Picture, Stroke, Tint, What};
+use lightvein_viewer::layers::Shadow;
+use lightvein_viewer::outdoors::sun::SunNow;
+use lightvein_viewer::paint::{
+    Ball, Batch, Corner, Culling, Cut, FaceStyle, Offscreen, Picture, Shadows, Stroke, Sunlight, Tint, What,
+};
 
 const SIZE_PX: [u32; 2] = [1280, 800];
 /// Redraws of which the median is told.
@@ -35,12 +42,14 @@ fn main() -> anyhow::Result<()> {
     let heatmap = Batch { tint: scaled(), ..mesh.clone() };
     let mut cut = mesh.clone();
     cut.cut = true;
+    let sunlit = Batch { what: sunlit(&mesh.what), ..mesh.clone() };
     let layers = [
         ("background", vec![]),
         ("mesh of 100,000 triangles", vec![mesh.clone()]),
         ("the same, in colours of its values", vec![heatmap]),
         ("the same, cut", vec![cut]),
         ("the same, as wireframe", vec![wireframe]),
+        ("the same, in the sun, with hybrid shadow maps", vec![sunlit]),
         ("20,000 nodes", vec![nodes.clone()]),
         ("20,000 edges", vec![edges.clone()]),
         ("mesh, nodes and edges", vec![mesh, nodes, edges]),
@@ -56,7 +65,8 @@ fn median_ms(offscreen: &mut Offscreen, batches: Vec<Batch>) -> anyhow::Result<f
     let aspect = SIZE_PX[0] as f32 / SIZE_PX[1] as f32;
     let cuts = vec![Cut { normal: Vec3::Z, offset_m: 0.5 }];
     let camera = Camera::fitted(BOUNDS_M, aspect);
-    let mut picture = Picture { camera, background: [[60, 66, 74], [28, 30, 34]], sunlight: None, cuts, batches };
+    let sunlight = sunlight(&batches);
+    let mut picture = Picture { camera, background: [[60, 66, 74], [28, 30, 34]], sunlight, cuts, batches };
     offscreen.draw(&picture, SIZE_PX)?;
     let mut times_ms = Vec::new();
     for _ in 0..REDRAWS {
@@ -67,6 +77,18 @@ fn median_ms(offscreen: &mut Offscreen, batches: Vec<Batch>) -> anyhow::Result<f
     }
     times_ms.sort_by(f64::total_cmp);
     Ok(times_ms[REDRAWS / 2])
+}
+
+/// The sun of a June afternoon over a picture with sunlit faces; none over others.
+fn sunlight(batches: &[Batch]) -> Option<Sunlight> {
+    let casters = batches.iter().find_map(|batch| match &batch.what {
+        What::Faces { data, style: FaceStyle::Sunlit, .. } => Some(Arc::clone(data)),
+        _ => None,
+    })?;
+    let site = Site { latitude_deg: Some(48.8), longitude_deg: Some(11.4), ..Site::default() };
+    let outdoors = Outdoors::of(&site, None).ok()?;
+    let now = SunNow::of(&outdoors, date(2025, 6, 21).at(16, 0, 0, 0)).ok()?;
+    Some(Sunlight { light: now.light, shadows: Some(Shadows { casters, settings: Shadow::default().settings() }) })
 }
 
 /// Height of the ground.
@@ -104,6 +126,15 @@ fn wireframe(what: &What) -> What {
     match what {
         What::Faces { data, culling, .. } => {
             What::Faces { data: Arc::clone(data), style: FaceStyle::Wireframe, culling: *culling }
+        }
+        other => other.clone(),
+    }
+}
+
+fn sunlit(what: &What) -> What {
+    match what {
+        What::Faces { data, culling, .. } => {
+            What::Faces { data: Arc::clone(data), style: FaceStyle::Sunlit, culling: *culling }
         }
         other => other.clone(),
     }

@@ -1,4 +1,4 @@
-//! What tells one shadow method from another: five settings, and the six methods of the literature as values of them.
+//! What tells one shadow method from another: a few settings, and the methods of the literature as values of them.
 
 use serde::{Deserialize, Serialize};
 

@@ -22,7 +22,8 @@ use textures::{Need, Textures};
 /// The maps of one view.
 pub struct Maps {
     passes: Passes,
-    eye: Eye,
+    /// None where the card does not compute: layers are even there.
+    eye: Option<Eye>,
     textures: Textures,
     numbers: Buffer,
     group: BindGroup,
@@ -48,7 +49,8 @@ impl Maps {
     pub fn draw(&mut self, device: &Device, queue: &Queue, casters: &Casters, view: &View, settings: &Settings) {
         let most_px = device.limits().max_texture_dimension_2d;
         let settings = &Settings { resolution: settings.resolution.min(most_px), ..*settings };
-        let seen = Plan::asks_depths(view, settings).then(|| self.eye.seen(device, queue, casters, view)).flatten();
+        let eye = self.eye.as_mut().filter(|_| Plan::asks_depths(view, settings));
+        let seen = eye.and_then(|eye| eye.seen(device, queue, casters, view));
         let plan = |bounds_m| Plan::of(view, settings, bounds_m, seen.as_ref());
         self.plan = casters.bounds_m().map(plan).unwrap_or_default();
 

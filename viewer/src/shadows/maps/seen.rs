@@ -19,6 +19,9 @@ const MOST_WAIT: Duration = Duration::from_secs(20);
 /// First and last depth, and the counts.
 const WORDS: usize = 2 + Seen::BINS as usize;
 
+/// Pixels that are counted together, as seen.wgsl has it.
+const WORKGROUP: u32 = 8 * 8;
+
 /// Draws and counts depths.
 pub(super) struct Eye {
     from_eye: RenderPipeline,
@@ -43,7 +46,11 @@ struct Reading {
 }
 
 impl Eye {
-    pub(super) fn new(device: &Device) -> Self {
+    /// None on cards that do not compute (OpenGL before 4.3).
+    pub(super) fn new(device: &Device) -> Option<Self> {
+        if device.limits().max_compute_invocations_per_workgroup < WORKGROUP {
+            return None;
+        }
         let told = group_layout(device, "eye", ShaderStages::VERTEX, &[uniform(true)]);
         let storage = BindingType::Buffer {
             ty: BufferBindingType::Storage { read_only: false },
@@ -70,7 +77,7 @@ impl Eye {
         let bytes = (WORDS * size_of::<u32>()) as u64;
         let clip = buffer("eye", 256, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let binding = BufferBinding { buffer: &clip, offset: 0, size: BufferSize::new(64) };
-        Self {
+        Some(Self {
             from_eye: depth_pipeline(device, &told, CompareFunction::Greater),
             clip_group: group(device, "eye", &told, &[BindingResource::Buffer(binding)]),
             counting,
@@ -80,7 +87,7 @@ impl Eye {
             read: buffer("counts read", bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST),
             clip,
             depths: None,
-        }
+        })
     }
 
     /// The depths that a perspective sees; none where it sees nothing, or the card is lost.

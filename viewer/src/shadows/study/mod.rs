@@ -137,7 +137,8 @@ fn by_memory(rows: &[Row]) -> Vec<(Ask, u64)> {
     for hybrid in largest_hybrids(rows).into_iter().map(|at| &rows[at]) {
         for method in [Method::Vsm, Method::Csm] {
             // Of the rows that were asked for the one with most layers, which is the method at its best.
-            let its = rows.iter().filter(|row| row.ask.method == method && !row.ask.is_by_memory);
+            let is_named = |row: &&Row| row.ask.variant == Variant::AsNamed && !row.ask.is_by_memory;
+            let its = rows.iter().filter(|row| row.ask.method == method).filter(is_named);
             let most = its.max_by_key(|row| (row.ask.settings.layers, row.bytes));
             let as_large = most.and_then(|most| as_large_as(most.ask, most.bytes, hybrid.bytes));
             if hybrid.ask.settings.layers <= MOST_LAYERS_BY_MEMORY {

@@ -1,6 +1,6 @@
 //! Which methods are measured, at which resolutions and numbers of layers?
 
-use crate::shadows::{Classes, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings};
+use crate::shadows::{Classes, MOST_LAYERS, Method, Overlap, RESOLUTIONS, Settings, Split};
 
 /// Resolutions by default: those of the paper's table.
 const DEFAULT_RESOLUTIONS: [u32; 3] = [256, 512, 1024];
@@ -46,11 +46,21 @@ pub enum Variant {
     Sharp,
     /// Where two layers overlap, the point's own alone is asked.
     OwnLayer,
+    /// Layers by logarithm from the first object on.
+    ByLogarithm,
 }
 
 impl Variant {
-    /// Those of the hybrid map.
-    pub const OF_HYBRID: [Self; 4] = [Self::ByDispersion, Self::OneClass, Self::Sharp, Self::OwnLayer];
+    /// What is changed of a method: what the hybrid map has of its own, and that in the others.
+    pub const fn of_method(method: Method) -> &'static [Self] {
+        match method {
+            Method::Plain | Method::Pcf => &[],
+            Method::Vsm | Method::Lvsm => &[Self::Sharp],
+            Method::Csm => &[Self::ByLogarithm],
+            Method::Hsm => &[Self::ByDispersion, Self::OneClass, Self::Sharp, Self::OwnLayer],
+            Method::HsmLight => &[Self::OneClass],
+        }
+    }
 
     /// In tables, after the method's name; empty where nothing is changed.
     pub const fn name(self) -> &'static str {
@@ -60,6 +70,7 @@ impl Variant {
             Self::OneClass => "one class",
             Self::Sharp => "no blur",
             Self::OwnLayer => "no medium bound",
+            Self::ByLogarithm => "by logarithm",
         }
     }
 
@@ -70,6 +81,7 @@ impl Variant {
             Self::OneClass => Settings { classes: Classes::One, ..settings },
             Self::Sharp => Settings { blurred: false, ..settings },
             Self::OwnLayer => Settings { overlap: Overlap::Own, ..settings },
+            Self::ByLogarithm => Settings { split: Split::CameraLogarithm, ..settings },
         }
     }
 }
@@ -117,20 +129,18 @@ pub fn asks(extent: &Extent) -> Vec<Ask> {
                 asks.push(Ask::new(method, Variant::AsNamed, resolution, layers));
             }
         }
-        if method == Method::Hsm {
-            asks.extend(variants(extent));
-        }
+        asks.extend(variants(method, extent));
     }
     asks
 }
 
-/// The variants of the hybrid map at one resolution and number of layers.
-fn variants(extent: &Extent) -> Vec<Ask> {
+/// The variants of a method at one resolution and number of layers.
+fn variants(method: Method, extent: &Extent) -> Vec<Ask> {
     let (near_resolution, near_layers) = VARIANTS_AT;
     let resolution = extent.resolutions.iter().copied().min_by_key(|side| side.abs_diff(near_resolution));
-    let layers = layers_of(Method::Hsm, extent).into_iter().min_by_key(|layers| layers.abs_diff(near_layers));
+    let layers = layers_of(method, extent).into_iter().min_by_key(|layers| layers.abs_diff(near_layers));
     let (Some(resolution), Some(layers)) = (resolution, layers) else { return Vec::new() };
-    Variant::OF_HYBRID.into_iter().map(|variant| Ask::new(Method::Hsm, variant, resolution, layers)).collect()
+    Variant::of_method(method).iter().map(|&variant| Ask::new(method, variant, resolution, layers)).collect()
 }
 
 fn layers_of(method: Method, extent: &Extent) -> Vec<usize> {
@@ -199,17 +209,19 @@ mod tests {
             }
         }
         let names: Vec<String> = asks.iter().map(Ask::name).filter(|name| name.contains(',')).collect();
-        assert_eq!(names.len(), Variant::OF_HYBRID.len());
+        assert_eq!(names.len(), Method::ALL.into_iter().map(|method| Variant::of_method(method).len()).sum::<usize>());
         assert!(asks.iter().enumerate().all(|(at, ask)| !asks[..at].contains(ask)), "a row stands twice");
     }
 
     #[test]
     fn every_variant_changes_something() {
-        let named = Method::Hsm.settings(512, 4);
-        for variant in Variant::OF_HYBRID {
-            assert_ne!(variant.of(named), named, "{variant:?}");
+        for method in Method::ALL {
+            let named = method.settings(512, 4);
+            assert_eq!(Variant::AsNamed.of(named), named);
+            for variant in Variant::of_method(method) {
+                assert_ne!(variant.of(named), named, "{method:?} {variant:?}");
+            }
         }
-        assert_eq!(Variant::AsNamed.of(named), named);
     }
 
     #[test]

@@ -165,7 +165,8 @@ fn memory(rows: &[Row]) -> Vec<Memory> {
     for hybrid in largest_hybrids(rows) {
         for method in [Method::Vsm, Method::Csm] {
             // The nearest from above.
-            let others = rows.iter().enumerate().filter(|(_, row)| row.ask.method == method);
+            let is_named = |row: &Row| row.ask.method == method && row.ask.variant == Variant::AsNamed;
+            let others = rows.iter().enumerate().filter(|(_, row)| is_named(row));
             let as_large = others.filter(|(_, row)| row.bytes >= rows[hybrid].bytes);
             let Some((other, _)) = as_large.min_by_key(|(_, row)| row.bytes) else { continue };
             for by in By::ALL {
