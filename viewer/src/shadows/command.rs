@@ -3,7 +3,7 @@
 //! Table or JSON go to stdout, what is being done to stderr; files are written at the end, each whole or not at all.
 
 use super::errors::Judge;
-use super::pictures::{self, Sun as Extent};
+use super::pictures::{self, Against};
 use super::study::plan::{self, asks};
 use super::study::{Budget, Findings, Row, measure};
 use super::truth::{Truth, opaque_corners_m, truth};
@@ -248,18 +248,17 @@ fn write(out: &Path, truth: &Truth, findings: &Findings, adapter: &str) -> Resul
     whole_file(&csv, |out| report::write_csv(out, &findings.rows)).with_context(|| of_writer(&csv))?;
     let svg = path("shadows.svg");
     whole_file(&svg, |out| chart::write_svg(out, findings, adapter)).with_context(|| of_writer(&svg))?;
-    write_png(&path("truth.png"), &pictures::of_truth(truth, Extent::Hard))?;
-    write_png(&path("truth_disc.png"), &pictures::of_truth(truth, Extent::Disc))?;
+    write_png(&path("truth.png"), &pictures::of_truth(truth, Against::Hard))?;
+    write_png(&path("truth_disc.png"), &pictures::of_truth(truth, Against::Disc))?;
     for (at, lit) in &findings.best {
         let Some(row) = findings.rows.get(*at) else { continue };
         let name = row.ask.method.name();
         write_png(&path(&format!("{name}.png")), &pictures::of_method(truth, lit))?;
-        write_png(&path(&format!("{name}_difference.png")), &pictures::of_difference(truth, lit, Extent::Hard))?;
+        write_png(&path(&format!("{name}_difference.png")), &pictures::of_difference(truth, lit, Against::Hard))?;
     }
     Ok(files)
 }
 
-/// The defaults of the command line are those that the window opens with.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -22,14 +22,14 @@ const TOO_MANY: Rgb<f32> = Rgb([40.0, 90.0, 240.0]);
 
 /// Which sun the truth is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sun {
+pub enum Against {
     /// Without extent.
     Hard,
     /// Its disc.
     Disc,
 }
 
-impl Sun {
+impl Against {
     fn of(self, reached: Reached) -> f32 {
         match self {
             Self::Hard => reached.hard,
@@ -39,8 +39,8 @@ impl Sun {
 }
 
 /// The truth under a sun.
-pub fn of_truth(truth: &Truth, sun: Sun) -> RgbaImage {
-    picture(truth, |_, seen| grey(seen, seen.sun.map_or(0.0, |reached| sun.of(reached))))
+pub fn of_truth(truth: &Truth, against: Against) -> RgbaImage {
+    picture(truth, |_, seen| grey(seen, seen.sun.map_or(0.0, |reached| against.of(reached))))
 }
 
 /// What a method shows, on the truth's surfaces.
@@ -49,9 +49,9 @@ pub fn of_method(truth: &Truth, lit: &[Option<Lit>]) -> RgbaImage {
 }
 
 /// Where what a method shows differs from the truth under a sun.
-pub fn of_difference(truth: &Truth, lit: &[Option<Lit>], sun: Sun) -> RgbaImage {
+pub fn of_difference(truth: &Truth, lit: &[Option<Lit>], against: Against) -> RgbaImage {
     picture(truth, |at, seen| {
-        let share = seen.sun.map_or(0.0, |reached| sun.of(reached));
+        let share = seen.sun.map_or(0.0, |reached| against.of(reached));
         let off = shown(lit, at, seen).map_or(0.0, |shown| shown - share);
         let Rgb(below) = grey(seen, share);
         let Rgb(colour) = if off > 0.0 { MISSING } else { TOO_MANY };
@@ -101,17 +101,17 @@ mod tests {
 
     #[test]
     fn the_sky_is_sky_and_light_is_brighter_than_shadow() {
-        let image = of_truth(&truth(), Sun::Hard);
+        let image = of_truth(&truth(), Against::Hard);
         assert_eq!(image.get_pixel(0, 0), &Rgba([150, 180, 215, 255]));
         assert_eq!(image.get_pixel(2, 0), &Rgba([255; 4]));
-        let level = |sun, x| of_truth(&truth(), sun).get_pixel(x, 0)[0];
-        assert!(level(Sun::Hard, 1) < level(Sun::Disc, 1) && level(Sun::Disc, 2) < 255);
+        let level = |against, x| of_truth(&truth(), against).get_pixel(x, 0)[0];
+        assert!(level(Against::Hard, 1) < level(Against::Disc, 1) && level(Against::Disc, 2) < 255);
         assert_eq!(of_method(&truth(), &lit([0.0, 0.0, 1.0, 1.0])), image);
     }
 
     #[test]
     fn red_is_a_missing_shadow_and_blue_one_too_many() {
-        let image = of_difference(&truth(), &lit([0.0, 1.0, 0.0, 1.0]), Sun::Hard);
+        let image = of_difference(&truth(), &lit([0.0, 1.0, 0.0, 1.0]), Against::Hard);
         assert_eq!(image.get_pixel(1, 0), &Rgba([235, 45, 35, 255]));
         assert_eq!(image.get_pixel(2, 0), &Rgba([40, 90, 240, 255]));
         let Rgba([r, g, b, _]) = *image.get_pixel(3, 0);
