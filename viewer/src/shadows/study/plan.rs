@@ -48,13 +48,19 @@ pub enum Variant {
     OwnLayer,
     /// Layers by logarithm from the first object on.
     ByLogarithm,
+    /// Planes are not followed; surfaces are lifted by what the filter reaches instead, as is common.
+    Lifted,
 }
+
+/// Texels that a filter of 4 x 4 reaches from its middle.
+const REACH_TEXELS: f32 = 2.0;
 
 impl Variant {
     /// What is changed of a method: what the hybrid map has of its own, and that in the others.
     pub const fn of_method(method: Method) -> &'static [Self] {
         match method {
-            Method::Plain | Method::Pcf => &[],
+            Method::Plain => &[],
+            Method::Pcf => &[Self::Lifted],
             Method::Vsm | Method::Lvsm => &[Self::Sharp],
             Method::Csm => &[Self::ByLogarithm],
             Method::Hsm => &[Self::ByDispersion, Self::OneClass, Self::Sharp, Self::OwnLayer],
@@ -71,6 +77,7 @@ impl Variant {
             Self::Sharp => "no blur",
             Self::OwnLayer => "no medium bound",
             Self::ByLogarithm => "by logarithm",
+            Self::Lifted => "lifted",
         }
     }
 
@@ -82,6 +89,7 @@ impl Variant {
             Self::Sharp => Settings { blurred: false, ..settings },
             Self::OwnLayer => Settings { overlap: Overlap::Own, ..settings },
             Self::ByLogarithm => Settings { split: Split::CameraLogarithm, ..settings },
+            Self::Lifted => Settings { follows_planes: false, lift_texels: REACH_TEXELS, ..settings },
         }
     }
 }
