@@ -15,6 +15,9 @@ use glam::{Vec2, Vec3};
 /// What is drawn: share of the sun and depth.
 const LIT: TextureFormat = TextureFormat::Rg32Float;
 
+/// The share where nothing is seen.
+const NOTHING: f32 = -1.0;
+
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lit {
@@ -121,7 +124,8 @@ impl<'a> Studio<'a> {
         let target = self.target.as_ref().context("no frame was drawn")?;
         let bytes = self.offscreen.read_bytes(&target.lit)?;
         let numbers: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
-        let lit = |[share, depth_m]: [f32; 2]| (share >= 0.0).then_some(Lit { share, depth_m });
+        // A share that is no number is something seen, and wrong.
+        let lit = |[share, depth_m]: [f32; 2]| (share != NOTHING).then_some(Lit { share, depth_m });
         Ok(numbers.into_iter().map(lit).collect())
     }
 
@@ -163,9 +167,9 @@ impl Target {
         Self { size_px, lit_view: view(&lit), depth_view: view(&depth), lit }
     }
 
-    /// Begins the pass; a share below zero stands for nothing.
+    /// Begins the pass.
     fn begin<'a>(&self, encoder: &'a mut CommandEncoder) -> RenderPass<'a> {
-        let nothing = Color { r: -1.0, ..Color::TRANSPARENT };
+        let nothing = Color { r: f64::from(NOTHING), ..Color::TRANSPARENT };
         encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("lit"),
             color_attachments: &[Some(RenderPassColorAttachment {

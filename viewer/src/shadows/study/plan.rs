@@ -11,7 +11,7 @@ const HSM_LAYERS: [usize; 4] = [2, 4, 7, 12];
 const CSM_LAYERS: [usize; 2] = [2, 4];
 
 /// Variants are measured at the resolution nearest to this one, and at the number of layers nearest to that one.
-const VARIANTS_AT: (u32, usize) = (512, 4);
+const VARIANTS_AT: (u32, usize) = (1024, 4);
 
 /// Sides of maps are whole multiples of this where they are chosen by memory.
 const SIDE_STEP: u32 = 16;
