@@ -1,8 +1,9 @@
 //! Draws pictures into a texture of its own: colours and depths, in two passes, and only what has changed.
 //!
-//! First pass: the background, the opaque batches, then the transparent ones, blended in the order given (within a batch
-//! in the order of its data: where several transparent faces lie behind one another their order may be wrong; culling to
-//! the void leaves mostly one). Before it, where the sun shines, shadow maps, in passes of their own. Second pass: what is on top, over everything, among itself hidden as usual.
+//! First pass: the opaque batches, the background behind them, then the transparent ones, blended in the order given (within a
+//! batch in the order of its data: where several transparent faces lie behind one another their order may be wrong; culling
+//! to the void leaves mostly one). Second pass: what is on top, over everything, among itself hidden as usual. Before both,
+//! where the sun shines, shadow maps, in passes of their own.
 
 use eframe::wgpu::*;
 
@@ -149,8 +150,10 @@ impl Canvas {
 
         let is_last = on_top.is_empty();
         let mut pass = target.begin(encoder, Pass::Scene, is_last);
+        self.draw_batches(&mut pass, opaque.into_iter(), picture);
+        // Behind them, and only where nothing hides it: a sky takes longer than a fade.
         self.draw_background(&mut pass, picture);
-        self.draw_batches(&mut pass, opaque.into_iter().chain(transparent), picture);
+        self.draw_batches(&mut pass, transparent.into_iter(), picture);
         drop(pass);
         if !is_last {
             self.draw_batches(&mut target.begin(encoder, Pass::OnTop, true), on_top.into_iter(), picture);

@@ -196,7 +196,8 @@ fn pipeline(device: &Device, layout: &PipelineLayout, key: Key) -> RenderPipelin
         depth_stencil: Some(DepthStencilState {
             format: DEPTHS,
             depth_write_enabled: Some(!key.blended && !is_background),
-            depth_compare: Some(if is_background { CompareFunction::Always } else { CompareFunction::GreaterEqual }),
+            // The background is infinitely far away.
+            depth_compare: Some(CompareFunction::GreaterEqual),
             stencil: StencilState::default(),
             bias: DepthBiasState::default(),
         }),

@@ -64,12 +64,16 @@ fn toned(rgb: vec3<f32>) -> vec3<f32> {
     return encoded(clamp(grey + (mapped - grey) * colour, vec3<f32>(0.0), vec3<f32>(1.0)));
 }
 
-// sRGB's code of linear values, and back.
+// sRGB's code of linear values: above the straight part by roots, which cost less than a power and are within 0.01 of 255.
 fn encoded(linear: vec3<f32>) -> vec3<f32> {
-    let high = 1.055 * pow(max(linear, vec3<f32>(1e-9)), vec3<f32>(1.0 / 2.4)) - 0.055;
+    let root = sqrt(linear);
+    let root4 = sqrt(root);
+    let root8 = sqrt(root4);
+    let high = 0.65393536 * root + 0.68883897 * root4 - 0.31858495 * root8 - 0.02018098 * linear - 0.00403996;
     return select(high, 12.92 * linear, linear <= vec3<f32>(0.0031308));
 }
 
+// Back, exactly.
 fn decoded(code: vec3<f32>) -> vec3<f32> {
     return select(pow((code + 0.055) / 1.055, vec3<f32>(2.4)), code / 12.92, code <= vec3<f32>(0.04045));
 }
