@@ -5,7 +5,7 @@ use crate::controls::Layer;
 use crate::layers::{Layers, MeshColour, MeshStyle, NodeColour, Shadow, Slice, VoxelShow};
 use crate::outdoors::QUANTITIES;
 use crate::shadows;
-use crate::shadows::command::ShadowArgs;
+use crate::shadows::study::command::ShadowArgs;
 use clap::{Parser, Subcommand};
 use glam::{DVec3, Vec3};
 use jiff::civil::{Date, Time};

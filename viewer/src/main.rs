@@ -6,7 +6,7 @@ use eframe::{NativeOptions, Renderer};
 use lightvein::job::{Cancel, Cancelled};
 use lightvein_viewer::app::App;
 use lightvein_viewer::args::{Args, Command};
-use lightvein_viewer::shadows::command;
+use lightvein_viewer::shadows::study::command;
 use lightvein_viewer::shot;
 use std::process::ExitCode;
 

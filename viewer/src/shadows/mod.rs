@@ -10,17 +10,11 @@
 //! [`MOST_LAYERS`] layers.
 
 mod casters;
-pub mod chart;
-pub mod command;
-pub mod errors;
 mod maps;
-pub mod pictures;
 mod plan;
-pub mod report;
 mod settings;
 mod studio;
 pub mod study;
-pub mod truth;
 
 pub use casters::Casters;
 pub use maps::Maps;

@@ -2,19 +2,25 @@
 //!
 //! A row's time is the median of whole frames (maps, and the view lit by them), each waited for, the first one left out: it
 //! makes textures and pipelines. Rows share a budget evenly; slow ones end with fewer frames. Errors are those of
-//! [`super::errors`].
+//! [`errors`].
 //!
 //! Limits: times are of the machine and whatever else it does; on a software driver they go by texels and triangles and say
 //! little of a graphics card.
 
-pub mod plan;
+pub mod asks;
+pub mod chart;
+pub mod command;
+pub mod errors;
+pub mod pictures;
+pub mod report;
 pub mod summary;
+pub mod truth;
 
-use super::errors::{Errors, Judge};
 use super::{Lit, Method, Studio, View};
 use anyhow::Result;
+use asks::{Ask, Variant, as_large_as};
+use errors::{Errors, Judge};
 use lightvein::job::Cancel;
-use plan::{Ask, Variant, as_large_as};
 use std::time::{Duration, Instant};
 use summary::{Summary, largest_hybrids, summary};
 
@@ -201,7 +207,7 @@ fn median(mut times_ms: Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::plan::{Extent, asks};
+    use super::asks::{Extent, asks};
     use super::*;
 
     fn row(ask: Ask, hard: f64, bytes: u64) -> Row {

@@ -1,7 +1,7 @@
 //! What do the rows say of the paper's claims? Layers for the same error, error for the same memory, time against VSM's.
 
 use super::Row;
-use super::plan::Variant;
+use super::asks::Variant;
 use crate::shadows::Method;
 
 /// HSM is said to need four layers where LVSM needs five for the same quality; a part of a layer is a layer.
@@ -192,9 +192,9 @@ fn time(rows: &[Row]) -> Vec<Time> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plan::{Ask, Extent, asks};
+    use super::super::asks::{Ask, Extent, asks};
     use super::*;
-    use crate::shadows::errors::Errors;
+    use crate::shadows::study::errors::Errors;
 
     fn row(ask: Ask, hard: f64, bytes: u64, frame_ms: f64) -> Row {
         let errors = Errors { counted: 1, left_out: 0, wrong: hard, hard, disc: hard, bleeding: None, acne: None };

@@ -8,7 +8,7 @@
 //! Limits: opaque triangles alone are seen and cast, exactly those that the maps are drawn of; glazing is left out of both, and
 //! so are the bodies of lights. The disc is not cut by the horizon.
 
-use super::View;
+use crate::shadows::View;
 use glam::{Vec2, Vec3};
 use lightvein::job::{Cancel, Cancelled};
 use lightvein::rays::Rays;

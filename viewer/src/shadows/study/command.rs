@@ -2,18 +2,18 @@
 //!
 //! Table or JSON go to stdout, what is being done to stderr; files are written at the end, each whole or not at all.
 
+use super::asks::{self, asks};
 use super::errors::Judge;
 use super::pictures::{self, Against};
-use super::study::plan::{self, asks};
-use super::study::{Budget, Findings, Row, measure};
 use super::truth::{Truth, opaque_corners_m, truth};
-use super::{Method, Studio, View, chart, report};
+use super::{Budget, Findings, Row, chart, measure, report};
 use crate::app::write_png;
 use crate::args::{Viewpoint, size, viewpoint};
 use crate::camera::Camera;
 use crate::outdoors::draw::Dome;
 use crate::outdoors::sun::SunDay;
 use crate::paint::Offscreen;
+use crate::shadows::{Method, Studio, View};
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use jiff::civil::{Date, DateTime, Time, date};
@@ -53,15 +53,15 @@ pub struct ShadowArgs {
     pub size: [u32; 2],
 
     /// The methods, with commas between: plain, pcf, vsm, lvsm, csm, hsm, hsm-light.
-    #[arg(long, value_name = "METHODS", value_delimiter = ',', value_parser = plan::method)]
+    #[arg(long, value_name = "METHODS", value_delimiter = ',', value_parser = asks::method)]
     pub methods: Vec<Method>,
 
     /// Texels a side of the maps, with commas between.
-    #[arg(long, value_name = "SIDES", value_delimiter = ',', value_parser = plan::resolution)]
+    #[arg(long, value_name = "SIDES", value_delimiter = ',', value_parser = asks::resolution)]
     pub resolutions: Vec<u32>,
 
     /// Layers of the layered methods, with commas between; by default some for each method.
-    #[arg(long, value_name = "LAYERS", value_delimiter = ',', value_parser = plan::layers)]
+    #[arg(long, value_name = "LAYERS", value_delimiter = ',', value_parser = asks::layers)]
     pub layers: Vec<usize>,
 
     /// One JSON object on stdout instead of tables.
@@ -209,8 +209,8 @@ fn measured(
         eprintln!("warning: nothing in view faces the sun: there are times, but no errors");
     }
     let or_default = |given: &[u32], default: Vec<u32>| if given.is_empty() { default } else { given.to_vec() };
-    let default = plan::Extent::default();
-    let extent = plan::Extent {
+    let default = asks::Extent::default();
+    let extent = asks::Extent {
         methods: if args.methods.is_empty() { default.methods } else { args.methods.clone() },
         resolutions: or_default(&args.resolutions, default.resolutions),
         layers: (!args.layers.is_empty()).then(|| args.layers.clone()),

@@ -1,7 +1,7 @@
 //! The findings of a study as a table for people, as CSV and as JSON.
 
-use super::study::summary::{By, Layers, MOST_TIMES_VSM, Summary};
-use super::study::{Findings, Row};
+use super::summary::{By, Layers, MOST_TIMES_VSM, Summary};
+use super::{Findings, Row};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -217,9 +217,9 @@ pub fn summary_json(summary: &Summary) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use super::super::asks::{Extent, asks};
     use super::super::errors::Errors;
-    use super::super::study::plan::{Extent, asks};
-    use super::super::study::summary::summary;
+    use super::super::summary::summary;
     use super::*;
 
     fn findings() -> Findings {

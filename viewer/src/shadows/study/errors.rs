@@ -6,8 +6,8 @@
 //! error. Texels that are wider than that still do: what a plain map shows there is theirs, and what others show above it
 //! is bleeding.
 
-use super::Lit;
 use super::truth::{Reached, Truth};
+use crate::shadows::Lit;
 
 /// Depths that differ by less, as a share, are of one surface.
 const SAME_DEPTH: f32 = 0.01;

@@ -1,8 +1,8 @@
 //! The chart of time against error, as SVG: a panel for each resolution and kind of error, the best of each ringed.
 
-use super::study::plan::Variant;
-use super::study::summary::By;
-use super::study::{Findings, Row};
+use super::asks::Variant;
+use super::summary::By;
+use super::{Findings, Row};
 use lightvein::export::chart::loglog::{self, Mark, Panel};
 use std::io::{self, Write};
 
@@ -57,8 +57,8 @@ fn panel(rows: &[Row], by: By, resolution: u32) -> Panel {
 
 #[cfg(test)]
 mod tests {
+    use super::super::asks::{Extent, asks};
     use super::super::errors::Errors;
-    use super::super::study::plan::{Extent, asks};
     use super::*;
 
     #[test]

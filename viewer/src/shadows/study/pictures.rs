@@ -3,8 +3,8 @@
 //! Grey by the sun on surfaces alone (its share times its cosine, over a little light from everywhere), so that nothing but
 //! shadows is looked at. A difference has the truth dimmed beneath it: red where a shadow is missing, blue where one is too many.
 
-use super::Lit;
 use super::truth::{Reached, Seen, Truth};
+use crate::shadows::Lit;
 use glam::Vec3;
 use image::{Rgb, Rgba, RgbaImage};
 
