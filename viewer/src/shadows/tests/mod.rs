@@ -1,5 +1,6 @@
 //! Shadows of boxes on the ground, pixel by pixel, against rays; and where the methods fail.
 
+mod failures;
 mod scenes;
 
 use super::*;
