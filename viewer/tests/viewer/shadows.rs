@@ -91,7 +91,9 @@ fn json_is_one_object_with_the_sun_and_the_rows() {
     let angle = |name: &str| told["sun"][name].as_f64().expect("an angle");
     assert!((angle("elevation_deg") - 71.4).abs() < 0.2 && (175.0..185.0).contains(&angle("azimuth_deg")), "{told}");
     let rows = told["rows"].as_array().expect("rows");
-    assert_eq!(rows.len(), 2);
+    // Two sizes, and the lifted variant at one of them.
+    assert_eq!(rows.len(), 3);
+    assert_eq!(rows.iter().filter(|row| row["variant"] == "lifted").count(), 1);
     assert!(rows.iter().all(|row| row["errors"]["counted_px"].as_u64() > Some(1000)), "{told}");
     assert_eq!(told["files"].as_array().map(Vec::len), Some(0));
 }

@@ -261,7 +261,7 @@ mod tests {
         let csv = String::from_utf8(csv).unwrap();
         assert!(csv.lines().all(|line| line.split(',').count() == COLUMNS.len()));
         assert_eq!(csv.lines().count(), findings.rows.len() + 1);
-        assert!(csv.contains("hsm,one class,512,4,1,false,2000000,1.5000,5,9,0.250000,0.500000,0.125000,,0.000000,1"));
+        assert!(csv.contains("hsm,one class,1024,4,1,false,2000000,1.5000,5,9,0.250000,0.500000,0.125000,,0.000000,1"));
         let rows = rows_json(&findings.rows);
         assert_eq!(rows.as_array().unwrap().len(), findings.rows.len());
         assert!(rows[0]["errors"].is_null() && rows[1]["errors"]["wrong"] == 0.25);
