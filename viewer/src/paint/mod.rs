@@ -12,6 +12,8 @@ mod pipelines;
 mod shade;
 mod sunlight;
 #[cfg(test)]
+pub(crate) mod test_adapter;
+#[cfg(test)]
 mod tests;
 mod uniforms;
 mod upload;

@@ -3,11 +3,12 @@
 mod shown;
 mod sunlit;
 
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
 
+use super::test_adapter::offscreen;
 use super::*;
 use crate::camera::{Camera, Standard};
 use crate::colour::{ColourMap, GREY, Scale};
@@ -16,19 +17,6 @@ const SIZE_PX: [u32; 2] = [200, 150];
 const BACKGROUND: [u8; 3] = [10, 20, 30];
 const RED: [u8; 4] = [255, 0, 0, 255];
 const GREEN: [u8; 4] = [0, 255, 0, 255];
-
-/// The adapter, one for all tests; None (and why) where there is none and none is demanded.
-fn offscreen() -> Option<MutexGuard<'static, Offscreen>> {
-    static OFFSCREEN: OnceLock<Result<Mutex<Offscreen>, NoAdapter>> = OnceLock::new();
-    match OFFSCREEN.get_or_init(|| Offscreen::new().map(Mutex::new)) {
-        Ok(offscreen) => Some(offscreen.lock().unwrap_or_else(|poisoned| poisoned.into_inner())),
-        Err(error) if std::env::var_os("LIGHTVEIN_NEED_GPU").is_some() => panic!("{error}"),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
-}
 
 /// The origin seen from the south at 10 m.
 fn camera() -> Camera {

@@ -2,8 +2,8 @@
 //! rays say in between.
 
 use super::super::{Filter, Lit, Method, Settings, Studio};
-use super::offscreen;
 use super::scenes::Town;
+use crate::paint::test_adapter::offscreen;
 use glam::Vec3;
 use image::{GrayImage, Luma, imageops};
 use std::path::Path;

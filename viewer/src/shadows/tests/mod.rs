@@ -4,22 +4,9 @@ mod failures;
 mod scenes;
 
 use super::*;
-use crate::paint::{NoAdapter, Offscreen};
+use crate::paint::Offscreen;
+use crate::paint::test_adapter::offscreen;
 use scenes::{Town, Wrong, wrong};
-use std::sync::{Mutex, MutexGuard, OnceLock};
-
-/// The adapter, one for all tests; none (and why) where there is none and none is demanded.
-fn offscreen() -> Option<MutexGuard<'static, Offscreen>> {
-    static OFFSCREEN: OnceLock<Result<Mutex<Offscreen>, NoAdapter>> = OnceLock::new();
-    match OFFSCREEN.get_or_init(|| Offscreen::new().map(Mutex::new)) {
-        Ok(offscreen) => Some(offscreen.lock().unwrap_or_else(|poisoned| poisoned.into_inner())),
-        Err(error) if std::env::var_os("LIGHTVEIN_NEED_GPU").is_some() => panic!("{error}"),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
-}
 
 /// What rays find wrong of a method's frame.
 fn errors(offscreen: &Offscreen, town: &Town, settings: &Settings) -> Wrong {
