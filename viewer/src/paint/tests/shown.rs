@@ -1,6 +1,7 @@
 //! Where and how often pictures are drawn: alone, in a user interface without a window, and in the test harness.
 
 use eframe::egui;
+use std::sync::OnceLock;
 
 use super::*;
 
