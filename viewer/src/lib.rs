@@ -1,9 +1,9 @@
 //! The window on what Lightvein finds: voxels, skeleton, flux, sun and exposure, seen and touched.
 //!
-//! It shows what the library computes and computes nothing of its own. A [`request::Request`] is what was asked, the
-//! [`worker`] answers it on a thread of its own with [`results::Results`], [`layers`] say what is shown of them, `draw` turns
-//! that into a [`paint::Picture`], and [`paint`] puts it on the screen. [`state::State`] holds all of this; panels are functions
-//! that show it and change it.
+//! It shows what the library computes and computes nothing of its own but the shadows of its pictures, which it holds to
+//! rays. A [`request::Request`] is what was asked, the [`worker`] answers it on a thread of its own with [`results::Results`],
+//! [`layers`] say what is shown of them, `draw` turns that into a [`paint::Picture`], and [`paint`] puts it on the screen.
+//! [`state::State`] holds all of this; panels are functions that show it and change it.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 

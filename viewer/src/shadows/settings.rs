@@ -225,14 +225,10 @@ impl Class {
 }
 
 impl Split {
-    /// Whether each layer has a map of its own; else all are made of one.
+    /// Whether each layer has a map of its own, and a point's layer is told by its depth from the camera; else all are made of one map,
+    /// and it is told by the depth from the light.
     pub const fn has_map_each(self) -> bool {
         matches!(self, Self::CameraPractical | Self::CameraLogarithm)
-    }
-
-    /// Whether a point's layer is told by its depth from the camera; else by that from the light.
-    pub const fn is_by_camera(self) -> bool {
-        self.has_map_each()
     }
 }
 

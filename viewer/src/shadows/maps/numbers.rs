@@ -36,7 +36,7 @@ impl ShadowNumbers {
     pub(super) fn new(plan: &Plan, view: &View, settings: &Settings) -> Self {
         let mut numbers = Self::zeroed();
         let shared_m = plan.layers.first().map_or(0.0, |layer| layer.map.length_m);
-        let by_light_m = if settings.split.is_by_camera() { 0.0 } else { shared_m };
+        let by_light_m = if settings.split.has_map_each() { 0.0 } else { shared_m };
         let blends = u32::from(settings.overlap == Overlap::Medium);
         let texels = if settings.filter == Filter::Compare { 1 } else { 4 };
         numbers.towards = view.towards_sun.extend(by_light_m).to_array();

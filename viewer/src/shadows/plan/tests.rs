@@ -50,7 +50,7 @@ fn every_visible_point_lies_on_the_map_of_its_layer() {
                     clip.truncate().abs().max_element() <= 1.0 && (0.0..=1.0).contains(&clip.z)
                 };
                 let depth_m = view.camera.depth_m(*point_m);
-                let by_camera = method.settings(512, 5).split.is_by_camera();
+                let by_camera = method.settings(512, 5).split.has_map_each();
                 let in_layer = |layer: &&Layer| !by_camera || (layer.from_m..=layer.until_m).contains(&depth_m);
                 let is_inside = !by_camera || (plan.layers[0].from_m..=plan.layers[4].to_m).contains(&depth_m);
                 assert!(!is_inside || plan.layers.iter().any(|layer| in_layer(&layer)), "{method:?} {point_m}");
