@@ -11,7 +11,7 @@ pub use fit::{LightMap, may_see};
 pub use partition::Seen;
 
 use super::View;
-use super::settings::{Class, Settings, Split};
+use super::settings::{Class, Classes, Settings, Split};
 use fit::{Basis, Box3, depths_m, visible};
 use glam::Vec3;
 
@@ -20,6 +20,9 @@ const OVERLAP: f32 = 0.1;
 
 /// What a scene's bounds are made wider by, as a share of the longest.
 const THICKNESS: f32 = 1e-4;
+
+/// Texels of class A a side of one of class C.
+const FEWEST: u32 = 4;
 
 /// Least variance of moments, as a share of the layer's range squared: what rounding leaves of 32 bits, and of 16 where the
 /// range is stored from -1 to 1.
@@ -136,9 +139,12 @@ fn layer(
 ) -> Layer {
     let compares = settings.filter.compares(class);
     let shared = !settings.split.has_map_each();
-    // A map that layers share has the first class's texels; moments are made fewer when they are made.
-    let resolution = class.resolution(settings.resolution);
-    let of_map = if shared { settings.resolution } else { resolution };
+    // A map that layers share has the first class's texels, whole ones of the last class too: of so many depths each of its moments
+    // is made.
+    let has_classes = settings.classes != Classes::One;
+    let of_a = if shared && has_classes { settings.resolution / FEWEST * FEWEST } else { settings.resolution };
+    let resolution = class.resolution(of_a);
+    let of_map = if shared { of_a } else { resolution };
     let map = LightMap::new(part, scene, basis, of_map);
     Layer {
         from_m,

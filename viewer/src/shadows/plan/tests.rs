@@ -111,3 +111,17 @@ fn parallel_and_flat_views_are_planned_too() {
         }
     }
 }
+
+#[test]
+fn moments_of_a_shared_map_are_of_whole_texels() {
+    let (view, bounds_m) = street();
+    for resolution in [16, 18, 333, 513, 1023] {
+        let plan = Plan::of(&view, &Method::HsmLight.settings(resolution, 6), bounds_m, Some(&seen(10.0, 380.0)));
+        assert!(plan.layers.iter().any(|layer| layer.class == Class::C));
+        for layer in &plan.layers {
+            let of_layer = layer.class.resolution(layer.map.resolution);
+            assert!(layer.compares || layer.resolution == of_layer, "{resolution} {layer:?}");
+            assert_eq!(layer.map.resolution % layer.resolution, 0, "{resolution} {layer:?}");
+        }
+    }
+}
