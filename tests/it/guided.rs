@@ -86,7 +86,7 @@ const SCENES: [(&str, u32, usize); 7] = [
     ("scenes/corridor/corridor.toml", 8192, 12),
     ("scenes/cave/cave.toml", 8192, 15),
     ("scenes/keyhole/keyhole.toml", 65_536, 4),
-    ("scenes/furnace/furnace.toml", 4096, 200),
+    ("scenes/furnace/furnace.toml", 8192, 200),
 ];
 
 #[test]
